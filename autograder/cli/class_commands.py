@@ -300,10 +300,10 @@ def week(
 )
 def worker(scheduler: str | None, unsafe_no_sandbox: bool, **choices: Any) -> None:
     """Run submissions for `grade --scheduler`, until you press Ctrl-C or the scheduler ends."""
-    from autograder.grading.running import execution_backends
+    from autograder.grading.cluster.cluster_dispatcher import check_dask
 
     with grading_errors():
-        execution_backends.check_dask()
+        check_dask()
         from autograder.grading.cluster.dask_worker import start_worker
 
         start_worker(scheduler, sandbox=not unsafe_no_sandbox, tell=click.echo, **choices)

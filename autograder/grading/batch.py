@@ -98,14 +98,14 @@ def grade(
     console = console or standard_output.console(stderr=True)
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
-    here = execution_backends.on_this_machine(directory, jobs, judge)
-    if scheduler is None:
-        backend = here
-    else:
-        execution_backends.check_dask()
-        execution_backends.check_address(scheduler)
+    here = backend = execution_backends.on_this_machine(directory, jobs, judge)
+    if scheduler is not None:
+        from autograder.grading.cluster import cluster_dispatcher  # the only door to it: few classes need it
+
+        cluster_dispatcher.check_dask()
+        cluster_dispatcher.check_address(scheduler)
         tell = functools.partial(plain_line, console)
-        backend = execution_backends.on_cluster(directory, scheduler, judge, tell)
+        backend = cluster_dispatcher.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)

@@ -11,8 +11,8 @@ import msgspec
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.cluster.cluster_dispatcher import ClusterDispatcher
 from autograder.grading.grading_task import Task
-from autograder.grading.running.task_dispatcher import Dispatcher
 from autograder.grading.running.worker_messages import Answered, Command, Give, Joined, News, Offer, Order
 from autograder.grading.tasks.task_making import task_of
 
@@ -83,13 +83,13 @@ def tasks_of_six(tiny: TinyClass) -> list[Task]:
 
 
 def make_dispatcher(
-    link: FakeLink, told: list[str] | None = None, address: str = "tcp://x:1", **options: Any
-) -> Dispatcher:
+    link: FakeLink, told: list[str] | None = None, *, boxed: bool = True
+) -> ClusterDispatcher:
     tell = (told if told is not None else []).append
-    return Dispatcher(cast("Any", link), address, tell=tell, **{"judge": "a:B", "boxed": True, **options})
+    return ClusterDispatcher(cast("Any", link), "a:B", "tcp://x:1", boxed=boxed, tell=tell)
 
 
-def ready(link: FakeLink, told: list[str] | None = None, **options: Any) -> Dispatcher:
+def ready(link: FakeLink, told: list[str] | None = None, **options: Any) -> ClusterDispatcher:
     """A dispatcher that knows its workers."""
     dispatcher = make_dispatcher(link, told, **options)
     dispatcher.await_workers()

@@ -19,9 +19,10 @@ from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.sandbox import why_impossible
 from autograder.command_name import COMMAND
+from autograder.grading.cluster.cluster_dispatcher import check_address
 from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running.execution_backends import check_address, cores
+from autograder.grading.running.execution_backends import cores
 from autograder.grading.running.order_executor import Executor
 from autograder.grading.running.worker_messages import Offer
 from autograder.safe_files import HeldFolder

@@ -13,10 +13,7 @@ if TYPE_CHECKING:
 class Worker:
     """A worker whose offer was accepted."""
 
-    name: str
     slots: int
-    troubles: int = 0
-    """The number of consecutive notebooks that this worker could not execute because the grader itself failed."""
     flights: set[int] = field(default_factory=set)
 
 

@@ -1,17 +1,13 @@
-"""The ways to execute tasks: on this machine or on the workers of a Dask cluster, in a sandbox unless switched off.
+"""Executes tasks on this machine, as many at the same time as the memory allows, in a sandbox unless switched off.
 
-On this machine, as many tasks are executed at the same time as the memory allows. On a cluster, each worker that has
-the same version of the course executes tasks. Without a sandbox, nothing is graded unless the user explicitly asked
-for that.
+Without a sandbox, nothing is graded unless the user explicitly asked for that.
 """
 
 from __future__ import annotations
 
 import contextlib
 import functools
-import importlib.util
 import os
-import re  # noqa: TID251  (the text comes from the instructor)
 from typing import TYPE_CHECKING
 
 import psutil
@@ -22,7 +18,6 @@ from autograder.grading.running.process_link import ProcessLink
 from autograder.grading.running.task_dispatcher import Dispatcher
 from autograder.grading.running.worker_messages import JUDGE
 from autograder.safe_files import HeldFolder, sweep
-from course_runtime.installation import installing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
@@ -60,35 +55,6 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
             boxed=boxed,
             overlays=directory.overlays,
         )
-
-
-@contextlib.contextmanager
-def on_cluster(
-    directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
-) -> Iterator[Execute]:
-    """Yield a function that executes tasks on the workers of a Dask cluster.
-
-    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
-
-    Args:
-        scheduler: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
-        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
-        tell: Called with a sentence for the instructor.
-
-    Raises:
-        GradingError: No scheduler answers at this address, no worker can execute tasks, or the class names overlays,
-            which workers do not have.
-    """
-    if directory.overlays:
-        raise GradingError(
-            f"{directory.path / 'class.toml'} names overlays, which the workers of a cluster do not have: grade "
-            "without --scheduler."
-        )
-    boxed = not directory.is_sandbox_off
-    with ProcessLink("autograder.grading.cluster.dask_client", scheduler, scratch=None) as link:
-        dispatcher = Dispatcher(link, scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell)
-        dispatcher.await_workers()
-        yield dispatcher.execute_all
 
 
 def remove_leftovers(directory: ClassDirectory) -> None:
@@ -136,7 +102,7 @@ def execute_all(
     with ProcessLink(
         "autograder.grading.running.order_executor", *words, scratch=scratch, overlays=overlays
     ) as machine:
-        dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
+        dispatcher = Dispatcher(machine, judge)
         yield from dispatcher.execute_all(tasks, on_start)
 
 
@@ -153,35 +119,6 @@ def at_once(processors: int, free_bytes: int) -> int:
 def cores() -> int:
     """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0))
-
-
-def check_dask() -> None:
-    """Check that Dask is installed.
-
-    Raises:
-        GradingError: Dask is not installed.
-    """
-    if importlib.util.find_spec("distributed") is None:
-        raise GradingError(
-            "Grading on a cluster needs Dask, which is not installed here. "
-            f"Type: {installing('cluster', clone='--with cluster')}"
-        )
-
-
-_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
-
-
-def check_address(address: str) -> None:
-    """Check that ``address`` has the form of a Dask scheduler's address, such as ``tcp://host:8786``.
-
-    Raises:
-        GradingError: The address has another form.
-    """
-    if not _ADDRESS.fullmatch(address):
-        raise GradingError(
-            f"{address!r:.200} is not an address of a Dask scheduler. An address looks like tcp://host:8786, "
-            "or tls://host:8786 if Dask is set up for TLS."
-        )
 
 
 UNBOXED_NOTE = (

@@ -1,9 +1,10 @@
-"""Gives tasks to workers, on this machine or in a cluster, and decides which tasks run again and which run alone.
+"""Gives tasks to workers, and decides which tasks run again and which run alone.
 
-A worker is a machine with a number of slots, each of which executes one task at a time. This machine counts as one
-worker. A task runs again if its worker ended. It also runs again, but alone on a worker, if the result is not reliable:
-the grader itself failed, or other tasks may have used up the memory or processor time that this task needed. Every
-answer is checked before it is used (:func:`autograder.grading.running.worker_messages.admitted_execution`).
+A worker is a machine with a number of slots, each of which executes one task at a time. Usually, this machine is the
+only one; :mod:`autograder.grading.cluster.cluster_dispatcher` has the rules for other machines. A task runs again if
+its worker ended. It also runs again, but alone on a worker, if the result is not reliable: the grader itself failed, or
+other tasks may have used up the memory or processor time that this task needed. Every answer is checked before it is
+used (:func:`autograder.grading.running.worker_messages.admitted_execution`).
 """
 
 from __future__ import annotations
@@ -19,16 +20,10 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.admission import NotAdmitted
-from autograder.cards.readable_text import paragraph
-from autograder.command_name import COMMAND
-from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.dispatched_tasks import Flight, Job, Worker
 from autograder.grading.running.worker_messages import (
-    ADDRESS,
-    LONGEST_WORDS,
     Answered,
-    Asked,
     Broken,
     Drop,
     Failed,
@@ -36,10 +31,9 @@ from autograder.grading.running.worker_messages import (
     Joined,
     Left,
     News,
+    Offer,
     Order,
-    Unfit,
     admitted_execution,
-    admitted_offer,
 )
 
 if TYPE_CHECKING:
@@ -59,7 +53,6 @@ _RETURN_SECONDS = 60.0
 _EXTRA_SECONDS = 90.0
 """Seconds that a worker may take beyond the time limits of a task before its answer is no longer expected."""
 _MOST_IN_FLIGHT = 2_000
-_MOST_TROUBLES = 3
 
 
 @dataclass(frozen=True)
@@ -75,44 +68,18 @@ class Dispatcher:
 
     Args:
         link: The connection to the workers.
-        address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The Python class of the judge, as ``module:class``.
-        boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
-        tell: Called with sentences for the instructor, for example that a worker was rejected and why.
     """
 
-    def __init__(
-        self,
-        link: ProcessLink,
-        address: str,
-        *,
-        judge: str,
-        boxed: bool,
-        tell: Callable[[str], None],
-    ) -> None:
-        self._link, self._address = link, address
-        self._judge, self._boxed, self._tell = judge, boxed, tell
+    def __init__(self, link: ProcessLink, judge: str) -> None:
+        self._link, self._judge = link, judge
         self._workers: dict[str, Worker] = {}
-        self._refused: dict[str, str] = {}
         self._waiting: list[Job] = []
         self._flights: dict[int, Flight] = {}
         self._done: deque[Done] = deque()
         self._last_left = time.monotonic()
         """The time when a worker was last lost; before that, the time when the work began."""
         self._number = 0
-
-    def await_workers(self) -> None:
-        """Wait until one worker has been accepted.
-
-        Raises:
-            GradingError: The scheduler cannot be reached, no worker exists, or all workers were asked for their
-                offers and rejected.
-        """
-        while not self._workers:
-            news = self._link.hear(None)
-            if isinstance(news, Asked):
-                raise GradingError(self._why_no_worker())
-            self._take_in(news)
 
     def execute_all(
         self, tasks: Iterable[Task], on_start: Callable[[Task], None] = lambda _: None
@@ -163,7 +130,9 @@ class Dispatcher:
         now = time.monotonic()
         if not self._workers and now >= self._last_left + _RETURN_SECONDS:
             raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
-        self._give_up_on_silent(now)
+        for number, flight in list(self._flights.items()):
+            if number in self._flights and flight.deadline <= now:
+                self._silent(number)
 
     def _give_out(self, jobs: Iterator[Job], on_start: Callable[[Task], None]) -> None:
         """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
@@ -221,70 +190,22 @@ class Dispatcher:
 
     def _take_in(self, news: News | None) -> None:
         match news:
-            case Joined(address, name, data):
-                self._consider(address, name, data)
-            case Unfit(address, name, reason):
-                why = f"the worker could not be asked for its offer ({reason})"
-                if "No module named" in reason:
-                    why = (
-                        f"the worker does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
-                        "or with the Python of the course's .venv"
-                    )
-                self._refuse(address, name, why)
+            case Joined(address, _, data):
+                self._workers[address] = Worker(msgspec.json.decode(data, type=Offer).slots)
             case Left(address, reason):
-                worker = self._workers.get(address)
-                if worker is not None and worker.flights:
-                    called = _called(address, worker.name)
-                    self._tell(
-                        f"The worker {called} has ended: the notebooks that it was executing run again."
-                    )
                 self._forget(address, reason or "the worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
-            case Failed(number, reason, forged) if number in self._flights:
-                if forged:
-                    self._forged(number, reason)
-                else:
-                    self._lost(number, f"the worker could not run this submission: {reason}")
-            case Broken(reason) if not self._address:
-                raise GradingError(
-                    f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
-                )
+            case Failed(number, reason) if number in self._flights:
+                self._lost(number, f"the worker could not run this submission: {reason}")
             case Broken(reason):
                 raise GradingError(
-                    f"The Dask scheduler at {self._address} cannot be reached ({reason}). Check that it "
-                    "runs, and that its address and its TLS settings are right. What was graded so far "
-                    "is kept."
+                    f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
                 )
             case _:
                 pass  # no message came, or an answer that is no longer needed
 
-    def _consider(self, address: str, name: str, data: bytes) -> None:
-        try:
-            offer = admitted_offer(data)
-        except NotAdmitted as error:
-            self._refuse(address, name, f"the worker sent an impossible offer: {error}. Check that machine")
-            return
-        if address != ADDRESS and offer.version != course_version():
-            self._refuse(
-                address,
-                name,
-                f"the worker's version of the course is {offer.version:.16}, and here it is {course_version()}. "
-                "Bring both machines to the same commit and start the worker again",
-            )
-        elif self._boxed and offer.obstacle:
-            self._refuse(address, name, f"the worker has no sandbox: {offer.obstacle[:500]}")
-        else:
-            self._workers[address] = Worker(name, offer.slots)
-
-    def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = _called(address, name)
-        reason = paragraph(reason, LONGEST_WORDS)
-        self._refused[address] = f"{called}: {reason}"
-        self._tell(f"The worker {called} gets no work: {reason}.")
-
     def _forget(self, address: str, reason: str) -> None:
-        self._refused.pop(address, None)
         worker = self._workers.pop(address, None)
         self._last_left = time.monotonic()
         for number in sorted(worker.flights) if worker else ():
@@ -295,21 +216,10 @@ class Dispatcher:
         try:
             execution = admitted_execution(data, flight.job.task)
         except NotAdmitted as error:
-            self._forged(number, str(error))
+            self._impossible(number, str(error))
             return
-        worker = self._workers[flight.worker]
         self._land(number)
-        # Do not count a failure of a task that ran alone: the notebook may be the cause. Several such notebooks run one
-        # after the other, so a worker without a fault would seem to fail again and again.
-        if not flight.job.alone:
-            worker.troubles = worker.troubles + 1 if execution.trouble else 0
         self._take_result(flight, execution)
-        if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
-            # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
-            self._exclude(
-                flight.worker,
-                f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
-            )
 
     def _take_result(self, flight: Flight, execution: Execution) -> None:
         """Let the task run again, alone, if its result is not reliable or another worker may succeed; else keep it."""
@@ -325,28 +235,16 @@ class Dispatcher:
         job.alone, job.cpu_seconds = True, execution.cpu_seconds
         self._wait(job)
 
-    def _forged(self, number: int, reason: str) -> None:
-        address = self._flights[number].worker
-        if address == ADDRESS:
-            self._lost(number, f"the process that executes notebooks gave an impossible answer: {reason}")
-            return
-        for held in self._workers[address].flights:
-            self._flights[held].job.attempts -= 1  # does not count: the worker is at fault, not the notebook
-        self._exclude(address, f"the worker sent an impossible answer: {reason}. Check that machine")
+    def _impossible(self, number: int, reason: str) -> None:
+        """Take in an answer that no unmodified worker sends."""
+        self._lost(number, f"the process that executes notebooks gave an impossible answer: {reason}")
 
-    def _exclude(self, address: str, reason: str) -> None:
-        """Give no more tasks to an accepted worker, and give the tasks that it was running to other workers."""
-        name = self._workers[address].name
-        self._forget(address, f"the worker was given no more work: {reason}")
-        self._refuse(address, name, reason)
+    def _silent(self, number: int) -> None:
+        """Take in that no answer has come in time."""
+        self._lost(number, "the execution has not ended in time")
 
-    def _give_up_on_silent(self, now: float) -> None:
-        for number, flight in list(self._flights.items()):
-            if number in self._flights and flight.deadline <= now:
-                if flight.worker == ADDRESS:
-                    self._lost(number, "the execution has not ended in time")
-                else:
-                    self._exclude(flight.worker, "the worker has not answered in time. Start it again")
+    def _why_no_worker(self) -> str:
+        return "This machine cannot execute notebooks: the process that executes them did not start in time."
 
     def _lost(self, number: int, reason: str) -> None:
         job = self._land(number).job
@@ -361,21 +259,3 @@ class Dispatcher:
         if flight.worker in self._workers:
             self._workers[flight.worker].flights.discard(number)
         return flight
-
-    def _why_no_worker(self) -> str:
-        if not self._address:
-            return (
-                "This machine cannot execute notebooks: the process that executes them did not start in time."
-            )
-        if not self._refused:
-            return (
-                f"The Dask scheduler at {self._address} has no workers. "
-                f"Start some: {COMMAND} worker {self._address}"
-            )
-        reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
-        return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
-
-
-def _called(address: str, name: str) -> str:
-    """Return the name and the address of a worker for a message."""
-    return paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)

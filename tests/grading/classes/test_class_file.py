@@ -10,8 +10,8 @@ import pytest
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.class_file import read_class_file, read_overlays
+from autograder.grading.cluster.cluster_dispatcher import on_cluster
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running.execution_backends import on_cluster
 from autograder.grading.table.student_list import read_roster
 from autograder.grading.tasks.date_reading import read_class_dates
 from tests.cases import cases

@@ -21,8 +21,8 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.grading.batch import grade
 from autograder.grading.classes import class_directory
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
+from autograder.grading.cluster import cluster_dispatcher
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running import task_dispatcher
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def cluster() -> Iterator[DaskCluster]:
 @pytest.fixture(autouse=True)
 def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes have tests of their own; here what a notebook does to the machine shows where it ran."""
-    monkeypatch.setattr(task_dispatcher, "course_version", lambda: VERSION)
+    monkeypatch.setattr(cluster_dispatcher, "course_version", lambda: VERSION)
 
 
 @pytest.fixture
@@ -249,7 +249,7 @@ from pathlib import Path
 from rich.console import Console
 from autograder.grading.classes.class_directory import switch_sandbox_off
 from autograder.grading.batch import grade
-from autograder.grading.running import task_dispatcher as dispatcher
+from autograder.grading.cluster import cluster_dispatcher as dispatcher
 dispatcher.course_version = lambda: "test"
 switch_sandbox_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],

@@ -20,15 +20,16 @@ from unittest.mock import Mock
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
-from autograder.grading.cluster import dask_worker
+from autograder.grading.cluster import cluster_dispatcher, dask_worker
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running import execution_backends, task_dispatcher
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from pathlib import Path
 
     from tiny_class import TinyClass
+
+    from autograder.grading.running import execution_backends
 
 
 def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,13 +114,13 @@ def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
     monkeypatch: pytest.MonkeyPatch, tiny: TinyClass
 ) -> None:
-    monkeypatch.setattr(task_dispatcher, "course_version", lambda: VERSION)
+    monkeypatch.setattr(cluster_dispatcher, "course_version", lambda: VERSION)
     switch_sandbox_off(tiny.path)
     directory = ClassDirectory(tiny.path)
     told: list[str] = []
 
     def connected(address: str) -> AbstractContextManager[execution_backends.Execute]:
-        return execution_backends.on_cluster(directory, address, "a:B", told.append)
+        return cluster_dispatcher.on_cluster(directory, address, "a:B", told.append)
 
     with DaskCluster("tls") as cluster, cluster.worker("w"):
         assert cluster.address.startswith("tls://")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import msgspec
 import pytest
@@ -23,9 +23,10 @@ from fake_link import (
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.cluster import cluster_dispatcher
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import task_dispatcher
-from autograder.grading.running.task_dispatcher import ATTEMPTS
+from autograder.grading.running.task_dispatcher import ATTEMPTS, Dispatcher
 from autograder.grading.running.worker_messages import (
     Answered,
     Asked,
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
+    monkeypatch.setattr(cluster_dispatcher, "course_version", lambda: "here")
     monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 0.05)
 
 
@@ -260,7 +261,7 @@ def test_an_executor_that_does_not_start_in_time_is_not_taken_for_a_scheduler(ta
     with pytest.raises(
         GradingError, match=r"This machine cannot execute notebooks: the process .* did not start"
     ):
-        list(make_dispatcher(FakeLink(), address="").execute_all(tasks))
+        list(Dispatcher(cast("Any", FakeLink()), "a:B").execute_all(tasks))
 
 
 def test_no_scheduler_says_so() -> None:

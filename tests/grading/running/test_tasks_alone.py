@@ -10,6 +10,7 @@ import pytest
 from fake_link import FakeLink, honest, joined, ready, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
+from autograder.grading.cluster import cluster_dispatcher
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import task_dispatcher
 from autograder.grading.running.task_dispatcher import ATTEMPTS
@@ -51,7 +52,7 @@ def said_nothing(give: Give, task: Task, cpu_seconds: float = 0.0) -> News:
 
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
+    monkeypatch.setattr(cluster_dispatcher, "course_version", lambda: "here")
     monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 0.05)
 
 

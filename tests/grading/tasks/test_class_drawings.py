@@ -12,6 +12,7 @@ from tiny_class import COURSE, FakeEngine, TinyClass
 from autograder import course
 from autograder.execution.verdicts_without_judge import grader_trouble
 from autograder.grading import course_version
+from autograder.grading.cluster import cluster_dispatcher
 from autograder.grading.course_version import CourseFiles
 from autograder.grading.running import execution_backends
 from autograder.grading.tasks import class_drawings
@@ -140,8 +141,8 @@ def test_on_a_cluster_the_solution_runs_on_the_machine_of_the_class(
 ) -> None:
     elsewhere = Recorder()
     workers = contextlib.nullcontext(elsewhere.execute_all)
-    monkeypatch.setattr(execution_backends, "on_cluster", lambda *_: workers)
-    monkeypatch.setattr(execution_backends, "check_dask", lambda: None)
+    monkeypatch.setattr(cluster_dispatcher, "on_cluster", lambda *_: workers)
+    monkeypatch.setattr(cluster_dispatcher, "check_dask", lambda: None)
     tiny.submit("ada")
     tiny.grade(scheduler="tcp://10.0.0.1:8786")
     assert (engine.given, elsewhere.recorded) == ({}, [])
