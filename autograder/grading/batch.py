@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import standard_output
 from autograder.grading.batch_steps import Batch
-from autograder.grading.batch_work import AskedFor
 from autograder.grading.class_checks import check_configuration
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import plain_line
 from autograder.grading.table.student_list import read_roster
+from autograder.grading.tasks.asked_for import AskedFor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

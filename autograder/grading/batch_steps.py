@@ -15,6 +15,7 @@ from autograder.grading.batch_work import (
     find_work,
     forget_unneeded_documents,
     moved_points,
+    unlisted_notice,
     without_grade,
     would_change,
 )
@@ -31,7 +32,8 @@ from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.class_drawings import DRAWINGS, ClassDrawings, all_drawings, drawings_of
 from autograder.grading.tasks.date_reading import read_class_dates
-from autograder.grading.tasks.fallen_points import FallenPoints, fallen, fits
+from autograder.grading.tasks.fallen_points import FallenPoints
+from autograder.grading.tasks.kept_results import KeptResults
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_work import Entered, MadeTask, Result
@@ -43,9 +45,6 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from autograder.execution.executed_cells import Execution
-    from autograder.grading.batch_work import AskedFor
-    from autograder.grading.class_records import Attempt
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.grading_task import Task
@@ -54,6 +53,7 @@ if TYPE_CHECKING:
     from autograder.grading.running.execution_backends import Execute
     from autograder.grading.table.roster import Roster
     from autograder.grading.table.rows import Row
+    from autograder.grading.tasks.asked_for import AskedFor
     from autograder.grading.tasks.class_drawings import Drawing
     from autograder.grading.tasks.submission_work import Work
 
@@ -101,12 +101,10 @@ class Batch:
         self._problems: list[str] = []
         self._notices: list[str] = []
         self._timings: dict[str, float] = {}
-        self._run_again: Counter[str] = Counter()
         self._reused = 0
         self._written = 0
         self._moved: list[Difference] = []
-        self._fallen = FallenPoints(directory.state)
-        self._earlier: dict[tuple[str, str], Attempt] = {}
+        self._kept = KeptResults(store, FallenPoints(directory.state), asked)
 
     @functools.cached_property
     def _writer(self) -> Writer:
@@ -150,27 +148,16 @@ class Batch:
         self._entries = gradebook_reading.read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         unlisted = [work for work in self._others if self._asked.has(*work.key) and not self._settled(work)]
-        if unlisted:
-            names = ", ".join(work.label for work in unlisted)
-            self._notices.append(
-                f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
-                f"add --student {unlisted[0].student}"
-            )
+        self._notices += unlisted_notice(unlisted)
         settled = {work.key: None if self._is_asked_again(work) else self._settled(work) for work in works}
         self._done = [entered for entered in settled.values() if entered]
         self._reused += sum(len(one.work.notebooks) for one in self._done)
         waiting = [work for work in works if settled[work.key] is None]
-        self._earlier = {
-            (work.student, attempt.assignment): attempt  # the newest one, which comes last
-            for work in waiting
-            for attempt in self._store.attempts(work.student)
-        }
-        if self._asked.lower == "no":
-            self._fallen.forget(self._asked.has)
+        self._kept.expect(waiting)
         return waiting
 
     def _is_asked_again(self, work: Work) -> bool:
-        return self._asked.again or (self._asked.lower == "yes" and self._fallen.has(*work.key))
+        return self._asked.again or (self._asked.lower == "yes" and self._kept.fallen.has(*work.key))
 
     def _settled(self, work: Work) -> Entered | None:
         """Return a submission as entered if the gradebook contains the grades of its present files; otherwise None."""
@@ -180,16 +167,6 @@ class Batch:
         if not self._directory.has_converted(work, entered.tasks):
             return None
         return Entered(work, entered.rows, entry, entered.shown)
-
-    def _note_if_worse(self, work: Work, rows: Iterable[Row]) -> None:
-        """Note that a newer hand-in has fewer points than the one before."""
-        last, now = self._earlier.get(work.key), sum(row.score for row in rows)
-        before = sum(row.score for row in last.rows) if last else 0.0
-        if last and last.made_from.handed_in != work.made_from.handed_in and now < before:
-            self._notices.append(
-                f"{work.label}: the newer files have {now:g} points, those before had {before:g}. If they were "
-                "collected, yes under use in collected.csv has the earlier file graded"
-            )
 
     def find_workers(self, works: list[Work]) -> list[Work]:
         """Find out who executes tasks, if something has to be graded.
@@ -291,7 +268,7 @@ class Batch:
         for result in results:
             work = result.work
             of_work = incomplete.setdefault(work.key, {})
-            of_work[result.task.notebook] = self._kept(result) if result.is_new else result
+            of_work[result.task.notebook] = self._noted(result) if result.is_new else result
             if len(of_work) == len(work.notebooks):
                 del incomplete[work.key]
                 yield [of_work[notebook] for notebook in work.notebooks]
@@ -333,23 +310,16 @@ class Batch:
             self._notices.append(
                 f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
-        rows = true_rows(
-            self._roster,
-            self._cells,
-            judged,
-            entries,
-            handed_in,
-            what_counts=self._what_counts,
-            zone=self._directory.time_zone,
-        )
+        counts, zone = self._what_counts, self._directory.time_zone
+        rows = true_rows(self._roster, self._cells, judged, entries, handed_in, what_counts=counts, zone=zone)
         self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
-        changes: list[Difference] = []
+        changes = None
         if self._asked.dry_run:
             in_order = [entered[work.key] for work in self._works]
-            changes = would_change(self._directory, in_order, entries, self._cells, self._dates)
+            changes = tuple(would_change(self._directory, in_order, entries, self._cells, self._dates))
         else:
             write_csv(self._directory.path / "grades.csv", rows)
-            if self._run_again:
+            if self._kept.run_again:
                 forget_unneeded_documents(self._directory)
         return GradeReport(
             path=self._directory.path,
@@ -357,11 +327,13 @@ class Batch:
             refused=tuple(one for one in self._refused if self._asked.tells_of(one, self._directory.path)),
             problems=tuple(self._problems),
             notices=tuple(self._notices),
-            would_change=tuple(changes) if self._asked.dry_run else None,
-            executed=self._run_again.total(),
-            run_again={why: count for why, count in self._run_again.items() if why},
+            would_change=changes,
+            executed=self._kept.run_again.total(),
+            run_again={why: count for why, count in self._kept.run_again.items() if why},
             moved=tuple(self._moved),
-            fallen=tuple(one for one in self._fallen.results if self._asked.has(one.student, one.assignment)),
+            fallen=tuple(
+                one for one in self._kept.fallen.results if self._asked.has(one.student, one.assignment)
+            ),
             reused=self._reused,
             written=self._written,
             seconds=time.monotonic() - self._began,
@@ -371,35 +343,11 @@ class Batch:
             due=due_dates(self._directory, self._asked.assignments or self._cells),
         )
 
-    def _why_again(self, work: Work) -> str:
-        """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
-        earlier = self._store.last_key(work)
-        if earlier is None:
-            return ""
-        nothing = "--again was given" if self._asked.again else "its result was not kept"
-        return work.made_from.changes_since(earlier) or nothing
-
-    def _kept(self, result: Result) -> Result:
-        """Store the result of an executed notebook, and return it without its evidence."""
-        self._run_again[self._why_again(result.work)] += 1
-        execution = self._accepted(result.work, result.task, result.execution)
-        if execution.trouble:
-            self._problems.append(f"{result.task.label} could not be checked: {execution.trouble}")
-        return replace(result, execution=execution)
-
-    def _accepted(self, work: Work, task: Task, execution: Execution) -> Execution:
-        """Store the result of a notebook, and return it; or the earlier one, if the points of the same files fell."""
-        last = self._earlier.get(work.key)
-        earlier = last if last and last.made_from.handed_in == work.made_from.handed_in else None
-        found = fallen(task, execution, earlier, self._why_again(work)) if self._asked.lower != "yes" else []
-        if found and self._asked.dry_run:
-            return replace(execution, evidence={})
-        before = earlier.tasks.get(task.notebook, "") if earlier else ""
-        kept = self._store.results(*work.key).get(before) if found else None
-        if kept is None or not fits(task, kept):
-            return self._store.keep(task, execution)
-        self._fallen.add(found)
-        self._store.adopt(task, before)
+    def _noted(self, result: Result) -> Result:
+        """Store the result of an executed notebook, and return the result that counts."""
+        kept = self._kept.keep(result)
+        if kept.execution.trouble:
+            self._problems.append(f"{kept.task.label} could not be checked: {kept.execution.trouble}")
         return kept
 
     def _tasks_of(self, work: Work, without: Collection[str] = ()) -> Iterator[MadeTask]:
@@ -427,10 +375,10 @@ class Batch:
                 raise
             self._problems.append(str(error))
             return Entered(work, tuple(without_grade(row) for row in rows), None)
-        self._note_if_worse(work, rows)
+        self._notices += self._kept.worse(work, rows)
         self._moved += moved_points(work, rows, self._entered.get(work.key))
         if self._asked.lower == "yes":
-            self._fallen.forget(lambda *key: key == work.key)
+            self._kept.fallen.forget(lambda *key: key == work.key)
         self._written += 1
         return Entered(work, rows, entry)
 

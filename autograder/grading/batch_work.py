@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_directory import SUFFIX, RefusedFile
+from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
+from autograder.grading.classes.student_folders import RefusedFile
 from autograder.grading.collecting.collected_csv import NAME, Table
 from autograder.grading.collecting.collected_files import Inbox
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
@@ -32,47 +33,10 @@ if TYPE_CHECKING:
     from autograder.grading.classes.gradebook_reading import Entries
     from autograder.grading.grading_task import GradedCell
     from autograder.grading.table.roster import Roster
+    from autograder.grading.tasks.asked_for import AskedFor
     from autograder.grading.tasks.result_keys import ResultKeys
     from autograder.grading.tasks.source_points import Released
     from autograder.grading.tasks.submission_work import Entered
-
-
-@dataclass(frozen=True)
-class AskedFor:
-    """The choices of the instructor for a run.
-
-    Attributes:
-        assignments: The chosen assignments; all if empty.
-        students: The chosen students; all if empty.
-        again: True to execute every notebook again.
-        feedback: True to make feedback pages.
-        dry_run: True to leave the gradebook unchanged.
-        lower: ``yes`` to take over points that fell although the same files were handed in, ``no`` to keep the earlier
-            points, and empty to ask.
-    """
-
-    assignments: Sequence[str]
-    students: Sequence[str]
-    again: bool = False
-    feedback: bool = True
-    dry_run: bool = False
-    lower: str = ""
-
-    def has(self, student: str, assignment: str) -> bool:
-        """Return True if the submission of a student for an assignment is chosen."""
-        return (not self.assignments or assignment in self.assignments) and (
-            not self.students or student in self.students
-        )
-
-    def tells_of(self, refused: RefusedFile, class_folder: Path) -> bool:
-        """Return True if a refused file belongs, or may belong, to the chosen students and assignments."""
-        submitted = class_folder / "submitted"
-        if submitted not in refused.path.parents:
-            return True
-        parts = refused.path.relative_to(submitted).parts
-        return (not self.students or parts[0] in self.students) and (
-            not self.assignments or len(parts) < 3 or parts[1] in self.assignments
-        )
 
 
 @dataclass(frozen=True)
@@ -252,6 +216,16 @@ def due_dates(directory: ClassDirectory, assignments: Collection[str]) -> dict[s
         for name, due in sorted(read_due_dates(directory.gradebook_url).items())
         if name in assignments
     }
+
+
+def unlisted_notice(works: Sequence[Work]) -> Iterator[str]:
+    """Yield a sentence about work of students whom ``students.csv`` does not list, if there is any."""
+    if works:
+        names = ", ".join(work.label for work in works)
+        yield (
+            f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
+            f"add --student {works[0].student}"
+        )
 
 
 def without_grade(row: Row) -> Row:

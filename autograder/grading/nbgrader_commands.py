@@ -20,7 +20,8 @@ from traitlets.config import Application
 from autograder.grading.batch import grade
 from autograder.grading.class_checks import check_configuration
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.classes.student_folders import reason_against_name
 from autograder.grading.grading_errors import GradingError, check_known
 from autograder.grading.result_writer import Writer
 from autograder.grading.returning.page_exporter import PageExporter

@@ -15,8 +15,8 @@ import pytest
 
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.class_secret import create_secret, read_secret
+from autograder.grading.classes.student_folders import reason_against_name
 from autograder.grading.grading_errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.grading_task import Task, points
 from autograder.grading.new_classes.new_class import NewClass

@@ -1,4 +1,4 @@
-"""Reads a class directory: its configuration, secret, assignments and submissions, and the rules for folder names."""
+"""Reads a class directory: its configuration, secret, assignments and submissions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import contextlib
 import functools
 import hashlib
 import json
-import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,8 +20,8 @@ from autograder.grading.classes.class_file import NAME as CLASS_FILE
 from autograder.grading.classes.class_file import read_class_file, read_overlays
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
+from autograder.grading.classes.student_folders import RefusedFile, folders_in, odd_files
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
-from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
 from autograder.student import known_classes
 
@@ -45,7 +44,6 @@ installed package cannot find that folder otherwise.
 SUFFIX = ".ipynb"
 TIMESTAMP = "timestamp.txt"
 """The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
-_LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 """nbgrader's names for the folders of a class that contain students' files."""
 
@@ -67,21 +65,6 @@ class Submission:
     def label(self) -> str:
         """The name of the submission in messages, such as ``ada/lab_1_2``."""
         return f"{self.student}/{self.assignment}"
-
-
-@dataclass(frozen=True)
-class RefusedFile:
-    """A file or folder in ``submitted`` that cannot be graded.
-
-    Attributes:
-        path: The file or folder.
-        reason: The reason, and what the instructor has to do.
-        waits: True if it is a collected file that waits for the instructor.
-    """
-
-    path: Path
-    reason: str
-    waits: bool = False
 
 
 class ClassDirectory:
@@ -289,11 +272,11 @@ class ClassDirectory:
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
         refused: list[RefusedFile] = []
-        for student in _folders(self.path / "submitted", refused):
-            for folder in _folders(student, refused):
+        for student in folders_in(self.path / "submitted", refused):
+            for folder in folders_in(student, refused):
                 if folder.name in notebooks:
                     taken.append(Submission(student.name, folder.name, folder))
-                    refused += _odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
+                    refused += odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
                 else:
                     names = ", ".join(notebooks) or "none"
                     refused.append(
@@ -383,57 +366,3 @@ def timestamp_text(when: datetime) -> str:
 def in_zone(when: datetime, zone: tzinfo) -> str:
     """Return a time as text in a time zone, such as ``2026-01-31 12:00 Europe/Berlin``."""
     return f"{when.astimezone(zone):%Y-%m-%d %H:%M} {zone}"
-
-
-def reason_against_name(name: str) -> str:
-    """Return why the name of a folder cannot be a student's id; empty if it can.
-
-    For example, ``*`` is not allowed, because nbgrader uses the name in search patterns and would find another
-    student's folder or none. Control characters are not allowed, because with them a student could forge lines in a
-    terminal or log.
-    """
-    if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
-        return f"the name is longer than {_LONGEST_NAME} bytes"
-    if any(not (character.isalnum() or character in " ._-@+'") for character in name):
-        return "the name has characters other than letters, digits, spaces and . _ - @ + '"
-    if not name or name.startswith("."):
-        return "the name is empty or begins with a dot"
-    if name != name.strip() or name != unicodedata.normalize("NFC", name):
-        return "the name begins or ends with a space, or has accents as separate characters (Unicode NFD)"
-    return ""
-
-
-def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
-    for path in paths:
-        reason = reason_against_file(path)
-        if reason:
-            yield RefusedFile(path, reason)
-
-
-def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
-    """Return the folders in ``parent`` with usable names, and add other folders and special files to ``refused``."""
-    folders = []
-    for entry in _entries(parent, refused):
-        if entry.name.startswith("."):
-            continue
-        if entry.is_symlink():
-            refused.append(RefusedFile(entry, "the path is a link; replace the link by the folder"))
-        elif entry.is_dir():
-            reason = reason_against_name(entry.name)
-            if reason:
-                refused.append(RefusedFile(entry, f"{reason}; rename the folder"))
-            else:
-                folders.append(entry)
-        elif not entry.is_file():
-            refused.append(RefusedFile(entry, "the path is neither a folder nor a file; remove it"))
-    return folders
-
-
-def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:
-    try:
-        return sorted(parent.iterdir())
-    except FileNotFoundError:
-        return []
-    except OSError as error:
-        refused.append(RefusedFile(parent, f"the folder could not be read: {error.strerror}"))
-        return []

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.classes.student_folders import reason_against_name
 from autograder.grading.collecting.collected_files import Arrival
 from autograder.grading.collecting.submitted_file_names import Pattern, read_lms_name, read_plain_name
 from autograder.grading.collecting.systems import GRADESCOPE, NAME_FORMS

@@ -14,13 +14,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_directory import (
-    SUFFIX,
-    TIMESTAMP,
-    ClassDirectory,
-    RefusedFile,
-    timestamp_text,
-)
+from autograder.grading.classes.class_directory import SUFFIX, TIMESTAMP, ClassDirectory, timestamp_text
+from autograder.grading.classes.student_folders import RefusedFile
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
     Arrival,

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from autograder.grading.classes.class_directory import RefusedFile
+    from autograder.grading.classes.student_folders import RefusedFile
     from autograder.grading.reporting.class_table import ClassTable, Difference
     from autograder.grading.tasks.fallen_points import FallenResult
 

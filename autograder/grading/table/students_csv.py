@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.classes.student_folders import reason_against_name
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.table.roster import COLUMNS, LMS, Student
 from autograder.grading.table.spreadsheet_csv import csv_rows, original

@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 from tiny_class import shown
 
-from autograder.grading.classes.class_directory import RefusedFile
+from autograder.grading.classes.student_folders import RefusedFile
 from autograder.grading.reporting.grade_report import GradeReport, tables
 from autograder.grading.table.rows import Row, columns
 
