@@ -21,7 +21,7 @@ from autograder.cli.class_options import (
     only_assignments,
     only_sections,
     over_option,
-    pairs,
+    rename_option,
     student_option,
 )
 from autograder.cli.command_results import (
@@ -100,15 +100,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @class_command()
 @class_folder
 @click.argument("new_list", required=False, metavar="[LIST]", type=click.Path(path_type=Path))
-@click.option(
-    "--rename",
-    "said",
-    multiple=True,
-    callback=pairs,
-    metavar="OLD=NEW",
-    help="A student's old and new id, if no number in the list shows that both are one student; may be given several "
-    "times.",
-)
+@rename_option
 @click.option(
     "--same-names",
     "by_name",

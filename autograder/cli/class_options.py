@@ -13,7 +13,7 @@ from autograder.cli.command_results import fail
 CONFIG_NAME = "nbgrader_config.py"
 
 
-class ClassCommand(click.Command):
+class _ClassCommand(click.Command):
     """A command about a class, whose first argument is the folder of the class: by default the current folder."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -23,7 +23,7 @@ class ClassCommand(click.Command):
         return super().parse_args(ctx, [".", *args] if is_here and "--help" not in args else args)
 
 
-class_command = functools.partial(click.command, cls=ClassCommand)
+class_command = functools.partial(click.command, cls=_ClassCommand)
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
 only_assignments = click.option(
     "--assignment", "assignments", multiple=True, help="Use only this assignment; may be given several times."
@@ -69,7 +69,7 @@ def known_zone(_context: click.Context, _option: click.Parameter, name: str) -> 
         fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
 
 
-def pairs(_context: click.Context, option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
+def _pairs(_context: click.Context, option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
     """Return the pairs of an option that were written as ``OLD=NEW``."""
     found = {old.strip(): new.strip() for old, _, new in (one.partition("=") for one in values)}
     if not all((*found, *found.values())):
@@ -81,9 +81,18 @@ into_columns = click.option(
     "--column",
     "columns",
     multiple=True,
-    callback=pairs,
+    callback=_pairs,
     metavar="ASSIGNMENT=COLUMN",
     help="The column for an assignment in the list, if its name does not show it; may be given several times.",
+)
+rename_option = click.option(
+    "--rename",
+    "said",
+    multiple=True,
+    callback=_pairs,
+    metavar="OLD=NEW",
+    help="A student's old and new id, if no number in the list shows that both are one student; may be given several "
+    "times.",
 )
 over_option = click.option(
     "--over", is_flag=True, help="Replace points that a person typed into the LMS. By default, they stay."
