@@ -51,7 +51,6 @@ COPIED = "# copied from this notebook: "
 """The beginning of a stub line that is replaced with code from the notebook when the student runs the cell
 (:mod:`autograder.notebook.program_magic`).
 """
-_ONE_THING = "A cell may ask for one thing only: split it into two cells."
 
 
 @dataclass(frozen=True)
@@ -95,16 +94,12 @@ def find_region(source: str) -> Region:
     inside = lines[begin + 1 : end]
     length = _stub_length(inside)
     if length == 0:
-        raise CellError(
-            begin + 1,
-            "The region does not begin with a TODO comment.",
-            f"Begin it with a comment such as '{TODO}create the publisher.'; students get that comment.",
-        )
+        raise CellError(begin + 1, "no_stub")
     if not any(line.strip() for line in inside[length:]):
-        raise CellError(begin + 1, "The region holds no solution.", "Write it below the TODO comment.")
+        raise CellError(begin + 1, "empty_region")
     for offset, line in enumerate(lines):
         if "TODO" in line and offset != begin + 1:
-            raise CellError(offset, "A second TODO in one cell.", _ONE_THING)
+            raise CellError(offset, "second_todo")
     return Region(
         before=tuple(lines[:begin]),
         stub=tuple(
@@ -125,11 +120,9 @@ def find_model_answer(source: str) -> str:
     begin, end = _markers(lines)
     answer = "\n".join(lines[begin + 1 : end]).strip()
     if not answer:
-        raise CellError(
-            begin + 1, "The region holds no answer.", "Write a good answer, and what earns points."
-        )
+        raise CellError(begin + 1, "no_answer")
     if not "".join(lines[:begin]).strip():
-        raise CellError(begin, "The question is missing.", f"Ask it above '{BEGIN}'.")
+        raise CellError(begin, "no_question")
     return answer
 
 
@@ -137,7 +130,7 @@ def _markers(lines: list[str]) -> tuple[int, int]:
     """Return the indexes of the lines on which the region begins and ends."""
     begin, end = _marker(lines, BEGIN), _marker(lines, END)
     if end < begin:
-        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Swap the two lines.")
+        raise CellError(end, "swapped_markers")
     return begin, end
 
 
@@ -146,21 +139,11 @@ def _marker(lines: list[str], marker: str) -> int:
     words = marker.removeprefix("### ")
     found = [offset for offset, line in enumerate(lines) if words in line]
     if not found:
-        raise CellError(
-            0,
-            f"A solution cell without '{marker}'.",
-            f"Put what students write between '{BEGIN}' and '{END}'.",
-        )
+        raise CellError(0, "no_marker", marker=marker)
     if len(found) > 1:
-        raise CellError(
-            found[1],
-            f"A second '{marker}' in one cell.",
-            _ONE_THING,
-        )
+        raise CellError(found[1], "second_marker", marker=marker)
     if _words(lines[found[0]]) != marker:
-        raise CellError(
-            found[0], "A marker is misspelt.", f"The line must contain '{marker}' and nothing else."
-        )
+        raise CellError(found[0], "misspelt_marker", marker=marker)
     return found[0]
 
 
@@ -234,12 +217,6 @@ def python_of(source: str) -> str:
     return f"\n{file.text}" if file is not None and file.is_python else ""
 
 
-_CHECK_FORM = (
-    "A check cell is one line such as: "
-    'check("lab_9_1.battery", BatteryNode) or check("lab_9_1.workspace", "ros2_ws")'
-)
-
-
 @dataclass(frozen=True)
 class CheckCall:
     """The call ``check("<exercise>", <subject>)`` in a check cell of a master.
@@ -268,20 +245,11 @@ def read_check(master: Path, cell: MasterCell) -> CheckCall:
     """
     exercise, subject, is_path = _check_call(master, cell)
     if exercise.partition(".")[0] != lab_name(master):
-        raise MasterError(
-            master,
-            cell.line,
-            f"The exercise '{exercise}' does not belong to this notebook.",
-            f"Exercises of this master begin with '{lab_name(master)}.'.",
-        )
+        raise MasterError(master, cell.line, "foreign_check", exercise=exercise, lab=lab_name(master))
     expected = exercises.grade_id(exercise)
     if cell.grade_id is not None and cell.grade_id != expected:
-        raise MasterError(
-            master,
-            cell.line,
-            f"The grade_id '{cell.grade_id}' does not match check(\"{exercise}\", …).",
-            f"Delete the grade_id: the cell gets '{expected}' automatically.",
-        )
+        words = {"name": cell.grade_id, "exercise": exercise, "expected": expected}
+        raise MasterError(master, cell.line, "grade_id_of_check", **words)
     return CheckCall(master, cell.line, exercise, subject, is_path)
 
 
@@ -297,7 +265,7 @@ def _check_call(master: Path, cell: MasterCell) -> tuple[str, str, bool]:
                     return exercise, name, False
                 case ast.Constant(str() as path):
                     return exercise, repr(path), True
-    raise MasterError(master, cell.line, "This check cell cannot be read.", f"{_CHECK_FORM}.")
+    raise MasterError(master, cell.line, "unreadable_check")
 
 
 def exercise_points(check: CheckCall) -> float:
@@ -311,19 +279,10 @@ def exercise_points(check: CheckCall) -> float:
     except exercises.UnknownExercise as error:
         # With a cutoff of 0 some names are always suggested, however different they are.
         near = difflib.get_close_matches(check.exercise, exercises.all_ids(), n=3, cutoff=0.0)
-        raise MasterError(
-            check.master,
-            check.line,
-            f"The exercise '{check.exercise}' does not exist.",
-            f"Write the exercise in the lab's folder, or name an existing one: {', '.join(near)}.",
-        ) from error
+        words = {"exercise": check.exercise, "near": ", ".join(near)}
+        raise MasterError(check.master, check.line, "unknown_exercise", **words) from error
     except exercises.BrokenExercise as error:
-        raise MasterError(check.master, check.line, f"{error}.", "Correct that file.") from error
+        raise MasterError(check.master, check.line, "broken_file", error=error) from error
     if points <= 0:
-        raise MasterError(
-            check.master,
-            check.line,
-            f"The exercise '{check.exercise}' has no points.",
-            "Give points to the criteria in the exercise's file.",
-        )
+        raise MasterError(check.master, check.line, "no_points", exercise=check.exercise)
     return points

@@ -79,8 +79,6 @@ class CellRole(StrEnum):
 _TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
 COPY_LINE = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
 _OPTIONS = {"tags", "grade_id"}
-_MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
-"""An example of the line with options that a master has above each question that a person grades."""
 
 
 @dataclass(frozen=True)
@@ -118,11 +116,10 @@ def parse_master(path: Path) -> list[MasterCell]:
     try:
         notebook = myst_to_notebook(text, add_source_map=True)
     except MystMetadataParsingError as error:
-        raise MasterError(path, None, f"{error}.", "Correct the YAML options on that line.") from error
+        raise MasterError(path, None, "no_yaml", error=error) from error
     except (ValidationError, AttributeError) as error:
         reason = str(error).split("\n", 1)[0]
-        problem = f"Jupyter refuses the header: {reason}."
-        raise MasterError(path, 1, problem, f"Begin with:\n{MASTER_HEADER}") from error
+        raise MasterError(path, 1, "bad_header", reason=reason, header=MASTER_HEADER) from error
     lines = text.splitlines()
     first_lines = notebook.metadata["source_map"]
     return [
@@ -135,9 +132,9 @@ def _read_master(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
-        raise MasterError(path, None, "The master does not exist.", "Look at the file's name.") from error
+        raise MasterError(path, None, "no_file") from error
     except UnicodeDecodeError as error:
-        raise MasterError(path, None, "The file is not UTF-8 text.", "Save it as UTF-8.") from error
+        raise MasterError(path, None, "no_utf8") from error
 
 
 def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
@@ -151,10 +148,10 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
         except CellError as error:
             raise error.at(path, first) from error
     if node.cell_type == "raw":
-        raise MasterError(path, place, "A chapter cannot contain raw cells.", "Make it Markdown or code.")
+        raise MasterError(path, place, "raw_cell")
     kind, grade_id = _options(path, node.metadata, place)
     if not node.source.strip():
-        raise MasterError(path, place, "An empty code cell.", "Write code in it, or delete it.")
+        raise MasterError(path, place, "empty_cell")
     # The text of the cell begins below its fence and options.
     first_line = node.source.split("\n", 1)[0].strip()
     below = (number + 1 for number in range(place, len(lines)) if lines[number].strip() == first_line)
@@ -172,31 +169,22 @@ def _question(
         or list(metadata["tags"]) != [CellRole.MANUAL]
         or not is_worth
     ):
-        raise MasterError(
-            path,
-            line,
-            "A text cell may have options only if it is a question that a person grades.",
-            f"Write: '{_MANUAL_FORM}'.",
-        )
+        raise MasterError(path, line, "options_of_text")
     return MasterCell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
 
 
 def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None]:
     for option in sorted(set(metadata) - _OPTIONS):
-        raise MasterError(
-            path, line, f"Unknown cell option '{option}'.", f"Known are: {', '.join(sorted(_OPTIONS))}."
-        )
+        raise MasterError(path, line, "unknown_option", option=option, known=", ".join(sorted(_OPTIONS)))
     tags = metadata.get("tags", [])
     tags = [tags] if isinstance(tags, str) else list(tags)
     for tag in tags:
         if tag == CellRole.MANUAL:
-            raise MasterError(path, line, "A person grades text, not code.", f"Begin with '{_MANUAL_FORM}'.")
+            raise MasterError(path, line, "manual_code")
         if tag not in _TAGS:
-            raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(_TAGS)}.")
+            raise MasterError(path, line, "unknown_tag", tag=tag, known=", ".join(_TAGS))
     if len(tags) > 1:
-        raise MasterError(
-            path, line, f"A cell with {len(tags)} tags.", "A cell may have only one: keep one tag."
-        )
+        raise MasterError(path, line, "several_tags", count=len(tags))
     kind = _TAGS[tags[0]] if tags else CellRole.GIVEN
     grade_id = metadata.get("grade_id")
     return kind, None if grade_id is None else str(grade_id)
@@ -229,10 +217,8 @@ def _copied(master: Path, cell: MasterCell, defined: dict[str, str]) -> MasterCe
         for name in names:
             if name not in defined:
                 number = cell.body_line + cell.source.count("\n", 0, line.start())
-                remedy = f"Defined so far: {', '.join(defined) or 'nothing'}."
-                raise MasterError(
-                    master, number, f"'### COPY' names '{name}', which no cell above defines.", remedy
-                )
+                known = ", ".join(defined) or "nothing"
+                raise MasterError(master, number, "copy_of_nothing", name=name, known=known)
         return "\n\n\n".join(defined[name] for name in names)
 
     return replace(cell, source=COPY_LINE.sub(copy, cell.source))
@@ -289,9 +275,7 @@ def _with_nested_hints(markdown: str) -> str:
             end = _closing(lines, offset)
             answer = "\n".join(lines[offset + 1 : end]).strip("\n")
             if not opening["question"] or not answer.strip():
-                raise CellError(
-                    offset, "A hint without its question or its answer.", "Write ':::{hint} What is asked?'."
-                )
+                raise CellError(offset, "empty_hint")
             run.append(_Hint(opening["question"], answer))
             offset = end + 1
             continue
@@ -313,9 +297,7 @@ def _closing(lines: list[str], opening: int) -> int:
             break
         if lines[offset].strip() == _HINT_CLOSING:
             return offset
-    raise CellError(
-        opening, "A hint that is not closed.", f"End it with a line '{_HINT_CLOSING}' in the same text cell."
-    )
+    raise CellError(opening, "open_hint")
 
 
 def _nested(hints: list[_Hint]) -> str:
@@ -373,27 +355,13 @@ def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
         drawing, picture = svg.read_bytes(), png.read_bytes()
         root = ElementTree.fromstring(drawing)
     except FileNotFoundError as error:
-        raise CellError(
-            line,
-            f"The figure {named} needs {error.filename}.",
-            "Draw it: python -m autograder.masters.figure_drawing",
-        ) from error
+        raise CellError(line, "figure_file", figure=named, file=error.filename) from error
     except ElementTree.ParseError as error:
-        raise CellError(
-            line,
-            f"The figure {named} is not an SVG ({error}).",
-            "Write it as an SVG file that a browser shows.",
-        ) from error
+        raise CellError(line, "figure_form", figure=named, error=error) from error
     words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
     if not all(words):
-        raise CellError(
-            line, f"The figure {named} has no description.", "Give its SVG a <title> and a <desc>."
-        )
+        raise CellError(line, "figure_words", figure=named)
     if DIGEST_KEYWORD + b"\0" + figure_digest(drawing) not in picture:
-        raise CellError(
-            line,
-            f"The figure {named} has changed since its PNG was drawn.",
-            "Draw it: python -m autograder.masters.figure_drawing",
-        )
+        raise CellError(line, "figure_stale", figure=named)
     # Brackets would end the alternative text of a Markdown image.
     return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tomllib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import re2
@@ -11,7 +13,12 @@ from autograder.course import CHAPTERS, COPY, LAB, SOLUTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
+
+
+FAULTS: dict[str, dict[str, str]] = tomllib.loads(
+    Path(__file__).with_name("faults.toml").read_text(encoding="utf-8")
+)
+"""For each fault of a master, by its name: the texts ``problem`` and ``remedy``."""
 
 
 class MasterError(Exception):
@@ -24,13 +31,19 @@ class MasterError(Exception):
         remedy: What to do about it, as a sentence.
     """
 
-    def __init__(self, path: Path, line: int | None, problem: str, remedy: str) -> None:
+    def __init__(self, path: Path, line: int | None, fault: str, /, **words: object) -> None:
+        """Say what is wrong.
+
+        Args:
+            path: The path of the file or folder.
+            line: The line, counted from 1; None for the whole file.
+            fault: The name of the fault in ``faults.toml``.
+            words: The words that the fault's texts need.
+        """
+        self.path, self.line = path, line
+        self.problem, self.remedy = (FAULTS[fault][part].format(**words) for part in ("problem", "remedy"))
         place = str(path) if line is None else f"{path}:{line}"
-        super().__init__(f"{place}: {problem} {remedy}")
-        self.path = path
-        self.line = line
-        self.problem = problem
-        self.remedy = remedy
+        super().__init__(f"{place}: {self.problem} {self.remedy}")
 
 
 class CellError(ValueError):
@@ -38,19 +51,17 @@ class CellError(ValueError):
 
     Attributes:
         offset: The line within the cell, counted from 0.
-        problem: What is wrong, as a sentence.
-        remedy: What to do about it, as a sentence.
+        fault: The name of the fault in ``faults.toml``.
+        words: The words that its texts need.
     """
 
-    def __init__(self, offset: int, problem: str, remedy: str) -> None:
-        super().__init__(f"{problem} {remedy}")
-        self.offset = offset
-        self.problem = problem
-        self.remedy = remedy
+    def __init__(self, offset: int, fault: str, /, **words: object) -> None:
+        super().__init__(fault)
+        self.offset, self.fault, self.words = offset, fault, words
 
     def at(self, path: Path, body_line: int) -> MasterError:
         """Return the error for the master ``path``, given the line on which the text of the cell begins."""
-        return MasterError(path, body_line + self.offset, self.problem, self.remedy)
+        return MasterError(path, body_line + self.offset, self.fault, **self.words)
 
 
 _LINK = re2.compile(r"\[([^\[\]]+)\]\((?:\.\./[\w-]+/)?([\w-]+)\.ipynb(#[^)]*)?\)")
@@ -66,24 +77,14 @@ def masters(root: Path) -> list[Path]:
     """
     folder = root / SOLUTIONS
     if not folder.is_dir():
-        raise MasterError(
-            root,
-            None,
-            "This folder contains no folder 'solutions'.",
-            "Name the folder that holds 'solutions' and 'chapters'.",
-        )
+        raise MasterError(root, None, "no_solutions")
     try:
         labs = [lab for chapter in course.chapters(root) for lab in chapter.labs]
     except course.BrokenChapter as error:
-        raise MasterError(folder, None, f"{error}.", "Correct that file.") from error
+        raise MasterError(folder, None, "broken_file", error=error) from error
     found = [lab / LAB for lab in labs if (lab / LAB).is_file()]
     if not found:
-        raise MasterError(
-            folder,
-            None,
-            "No master was found.",
-            f"Masters are files such as solutions/<chapter>/<lab>/{LAB}.",
-        )
+        raise MasterError(folder, None, "no_masters")
     return found
 
 

@@ -84,7 +84,7 @@ def reference_source(
             own.clear()
         elif named.cell.kind is CellRole.SOLUTION:
             own.append(named.cell.source)
-    raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
+    raise MasterError(master, None, "no_check", exercise=exercise)
 
 
 def _program_parts(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
@@ -168,15 +168,11 @@ def _solution_text(exercise: str, code: list[str], why: Path) -> str:
         or len(reason.splitlines()) > _MAX_LINES
         or any(len(line) > _MAX_WIDTH for line in reason.splitlines())
     ):
-        raise MasterError(
-            why, 1, f"A reason has one or {_MAX_LINES} lines.", "Give only the most important reason."
-        )
+        raise MasterError(why, 1, "long_reason")
     words, _, rest = other.partition("```python\n")
     example, fence, after = rest.partition("\n```")
     if other and (not words.strip() or not fence or after.strip()):
-        raise MasterError(
-            why, None, f"'{_OTHER_WAY}' has another form.", "Write a paragraph, then one block ```python."
-        )
+        raise MasterError(why, None, "other_way")
     fields = {
         "exercise": exercise,
         "code": code,

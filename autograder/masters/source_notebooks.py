@@ -114,7 +114,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
     try:
         cells = _with_set_up_cells(master, with_copies(master, parse_master(master)))
     except course.BrokenChapter as error:
-        raise MasterError(master, None, f"{error}.", "Correct that file.") from error
+        raise MasterError(master, None, "broken_file", error=error) from error
     cells += _links(master)
     named = list(_name_all(master, cells, points))
     _unique(master, named)
@@ -186,12 +186,7 @@ def _region_where_it_belongs(master: Path, cell: MasterCell) -> None:
         elif cell.kind is CellRole.SOLUTION:
             _is_python(master, cell, find_region(cell.source).unsolved)
         elif mentions_a_region(cell.source):
-            raise MasterError(
-                master,
-                cell.line,
-                "A solution region in a cell that is not a solution cell.",
-                "Tag it: ':tags: [solution]'.",
-            )
+            raise MasterError(master, cell.line, "stray_region")
     except CellError as error:
         raise error.at(master, cell.body_line) from error
 
@@ -202,29 +197,17 @@ def _is_python(master: Path, cell: MasterCell, unsolved: str) -> None:
         _defined_names(cell.source)
     except SyntaxError as error:
         line = cell.body_line + (error.lineno or 1) - 1
-        problem = f"The solution is not valid Python ({error.msg})."
-        raise MasterError(master, line, problem, "Correct this line.") from error
+        raise MasterError(master, line, "broken_solution", error=error.msg) from error
     try:
         _defined_names(unsolved)
     except SyntaxError as error:
-        raise MasterError(
-            master,
-            cell.line,
-            f"Without its solution the cell is not valid Python ({error.msg}).",
-            "Students get it in this form: leave a docstring or a 'pass' outside of the region.",
-        ) from error
+        raise MasterError(master, cell.line, "broken_stub", error=error.msg) from error
 
 
 def _defined_name(master: Path, cell: MasterCell) -> str:
     names = _defined_names(cell.source)
     if len(names) != 1:
-        raise MasterError(
-            master,
-            cell.line,
-            "A solution cell is named after the one function or class that it defines, but this one defines "
-            f"{len(names)}.",
-            "Let it define exactly one, or name the cell: ':grade_id: some_name'.",
-        )
+        raise MasterError(master, cell.line, "no_single_name", count=len(names))
     return names[0]
 
 
@@ -232,20 +215,10 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
     seen: dict[str, int] = {}
     for item in named:
         if not _GRADE_ID.fullmatch(item.name):
-            raise MasterError(
-                master,
-                item.cell.line,
-                f"'{item.name}' cannot be a grade_id.",
-                "Use letters, digits, '_' and '-', at most 64 of them.",
-            )
+            raise MasterError(master, item.cell.line, "bad_grade_id", name=item.name)
         if item.name in seen:
-            raise MasterError(
-                master,
-                item.cell.line,
-                f"The grade_id '{item.name}' is already used by the cell on line {seen[item.name]}.",
-                "An exercise may be checked in one cell only: if both cells check the same one, remove a cell. "
-                "Otherwise give one of the cells another grade_id: ':grade_id: some_name'.",
-            )
+            other = seen[item.name]
+            raise MasterError(master, item.cell.line, "grade_id_twice", name=item.name, other=other)
         seen[item.name] = item.cell.line
 
 
@@ -262,19 +235,11 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
         elif item.check is None or (item.check.is_path and on_disk):
             continue
         elif item.check.is_path:
-            raise MasterError(
-                master,
-                item.cell.line,
-                f"The check judges {item.check.subject} on the disk, but no solution cell writes a file.",
-                "Let a solution cell begin with '%%writefile <path>'.",
-            )
+            raise MasterError(master, item.cell.line, "nothing_written", subject=item.check.subject)
         elif item.check.subject not in written:
-            raise MasterError(
-                master,
-                item.cell.line,
-                f"The check judges '{item.check.subject}', which no solution cell above it defines.",
-                f"Defined above it: {', '.join(sorted(written)) or 'nothing so far'}.",
-            )
+            known = ", ".join(sorted(written)) or "nothing so far"
+            words = {"subject": item.check.subject, "known": known}
+            raise MasterError(master, item.cell.line, "undefined_subject", **words)
 
 
 def _node(named: NamedCell) -> NotebookNode:

@@ -5,15 +5,17 @@ Each file in ``bad/`` is a small master with one mistake in it; ``good.md`` has 
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+import autograder.masters
 from autograder import exercises
 from autograder.masters.code_cells import CheckCall, exercise_points
-from autograder.masters.master_files import MasterError, masters
+from autograder.masters.master_files import FAULTS, MasterError, masters
 from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
@@ -129,3 +131,10 @@ def test_a_folder_without_masters(tmp_path: Path) -> None:
     (tmp_path / "solutions").mkdir()
     with pytest.raises(MasterError, match="No master was found"):
         masters(tmp_path)
+
+
+def test_each_fault_is_raised_and_each_that_is_raised_has_its_texts() -> None:
+    sources = "".join(file.read_text() for file in Path(autograder.masters.__path__[0]).glob("*.py"))
+    raised = re.findall(r'(?:Master|Cell)Error\([^"]*?"(\w+)"', sources)
+    assert set(raised) == set(FAULTS)
+    assert {tuple(texts) for texts in FAULTS.values()} == {("problem", "remedy")}
