@@ -58,6 +58,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
+from autograder.authoring.author_texts import author_text
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -155,21 +157,20 @@ class ListedAnswer:
             existing = sorted(file.name for file in self.base.parent.glob("*.*"))
             similar = difflib.get_close_matches(self.base.name, existing, 1)
             hint = f"did you mean {similar[0]}?" if similar else f"there are {', '.join(existing)}"
-            raise self._bad(
-                f"{self.base.parent} has no file {self.base.name}, which is the entry's base; {hint}"
-            ) from None
+            raise self.bad("no_base", folder=self.base.parent, base=self.base.name, hint=hint) from None
         try:
             changed = edited_text(text, self.entry.change)
         except CannotEdit as error:
-            raise self._bad(f"the edit does not fit {self.base.name}: {error}") from None
+            raise self.bad("other_base", base=self.base.name, error=error) from None
         if not text.startswith(("#", '"""')):
             # The base begins with code, not with a comment to replace.
             return f"# {shows}\n{changed}"
         _, _, rest = changed.partition("\n")
         return (f"# {shows}" if text.startswith("#") else f'"""{shows}"""') + f"\n{rest}"
 
-    def _bad(self, what: str) -> BadTable:
-        return BadTable(f"{self.table}: {self.file.name}: {what}")
+    def bad(self, what: str, /, **words: object) -> BadTable:
+        """Return the error for this entry of the table."""
+        return BadTable(f"{self.table}: {self.file.name}: {author_text(what, **words)}")
 
 
 def listed_answers(folder: Path) -> Iterator[ListedAnswer]:
@@ -196,21 +197,19 @@ def _refuse_unusable(answer: ListedAnswer, *, twice: bool) -> None:
     workspace = file.suffix == WORKSPACE
     needed = (entry.change,) if workspace else (entry.base, entry.change)
     given = (entry.base, entry.shows, entry.change)
+    is_right = file.parent.name == ANSWER_KINDS[0]
     troubles = {
-        "the answer is listed twice": twice,
-        "a wrong answer needs a diagnosis": file.parent.name != ANSWER_KINDS[0] and not entry.diagnosis,
-        "a right answer must not have a diagnosis": file.parent.name == ANSWER_KINDS[0]
-        and bool(entry.diagnosis or entry.also),
-        "an edit needs the fields base and change": any(given) and not all(needed),
-        "remove base: settings.toml sets the base of all workspaces": workspace and bool(entry.base),
-        f"the entry is an edit, but the file {file} exists: remove one of the two": any(given)
-        and file.exists(),
-        f"the file {file} does not exist, and the answer has no base and change": not any(given)
-        and not file.exists(),
+        "listed_twice": twice,
+        "no_diagnosis": not is_right and not entry.diagnosis,
+        "a_diagnosis": is_right and (entry.diagnosis or entry.also),
+        "half_an_edit": any(given) and not all(needed),
+        "second_base": workspace and entry.base,
+        "edit_and_file": any(given) and file.exists(),
+        "no_edit_no_file": not any(given) and not file.exists(),
     }
     for what, holds in troubles.items():
         if holds:
-            raise BadTable(f"{answer.table}: {file.name}: {what}")
+            raise answer.bad(what, file=file)
 
 
 def answer_settings(folder: Path) -> AnswerSettings:
@@ -258,7 +257,7 @@ def edited_text(base: str, change: str) -> str:
     end = len(lines)
     for at, old, new in changes:
         if at + len(old) > end:
-            raise CannotEdit(f"two places of the change share the line {lines[end]!r}: write them as one")
+            raise CannotEdit(author_text("shared_line", line=lines[end]))
         lines[at : at + len(old)] = new
         end = at
     return "\n".join(lines)
@@ -269,20 +268,15 @@ def _before_and_after(part: str) -> tuple[list[str], list[str]]:
     old, new = [], []
     for line in part.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):
-            raise CannotEdit(f"{line!r} does not begin with -, + or a space")
+            raise CannotEdit(author_text("other_beginning", line=line))
         if line[:1] != "+":
             old.append(line[1:])
         if line[:1] != "-":
             new.append(line[1:])
     if old == new:
-        raise CannotEdit(
-            f"{part!r} changes nothing: put - in front of each line to remove and + in front of each line to add"
-        )
+        raise CannotEdit(author_text("no_change", part=part))
     if not old:
-        raise CannotEdit(
-            f"{part!r} does not say where to add its lines: also write the unchanged line before or after them, "
-            "with a space in front"
-        )
+        raise CannotEdit(author_text("no_place", part=part))
     return old, new
 
 
@@ -294,14 +288,11 @@ def _only_index(lines: list[str], old: list[str]) -> int:
     text = "\n".join(old)
     if found:
         numbers = ", ".join(str(at + 1) for at in found)
-        raise CannotEdit(
-            f"{text!r} occurs in the base {len(found)} times (lines {numbers}): add the line before or after it, "
-            "with a space in front"
-        )
+        raise CannotEdit(author_text("several_places", text=text, count=len(found), numbers=numbers))
     missing = next((line for line in old if line not in lines), None)
     if missing is not None:
-        raise CannotEdit(f"{missing!r} is not a line of the base")
-    raise CannotEdit(f"each line of {text!r} is in the base, but there the lines do not follow each other")
+        raise CannotEdit(author_text("no_line", line=missing))
+    raise CannotEdit(author_text("apart", text=text))
 
 
 _SECTION = re.compile(r"^=== (?P<path>\S+)(?: -> (?P<to>\S+)| \((?P<what>changed|removed)\))?$")

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
+from autograder.authoring.author_texts import author_text
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence
 from autograder.masters.code_cells import find_region
@@ -57,25 +58,16 @@ def _of_answers(listed: Sequence[Answer], enough: Mapping[str, int]) -> Iterator
     counts = Counter(answer.file.parent.name for answer in listed)
     few = [f"{counts[kind]} {kind}" for kind, least in enough.items() if counts[kind] < least]
     if few:
-        yield (
-            f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
-            f"least {enough['right']} right answers in different styles and {enough['wrong']} wrong answers"
-        )
+        yield author_text("few_answers", few=" and ".join(few), **enough)
     for answer in listed:
         if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
-            yield (
-                f"answers: rename {answer.short_name}, so that its name begins with its diagnosis, "
-                f"{answer.diagnoses[0]}"
-            )
+            yield author_text("other_file_name", answer=answer.short_name, diagnosis=answer.diagnoses[0])
 
 
 def _of_endpoints(exercise: Exercise) -> Iterator[str]:
     if exercises.reference_path(exercise.id).exists():
         for name in unasked_outputs(exercise, evidence_files.load_reference(exercise.id)):
-            yield (
-                f"endpoints: no criterion asks for {name}, which your solution has. Add one; or write "
-                f'unasked=("{name}",) and record again, then students need not have it'
-            )
+            yield author_text("unasked_output", name=name)
 
 
 def unasked_outputs(exercise: Exercise, recorded: Reference) -> list[str]:
@@ -122,14 +114,15 @@ def _of_mistakes(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
         used |= {key for answer in listed for key in answer.diagnoses}
         # A recorded wrong answer says on the card itself what it is, and what a mutant does has keys of its own.
         used -= {"variant", "mutant"} | {key for one in listed if one.advice for key in one.diagnoses}
-        yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
+        for key in sorted(used - explained):
+            yield author_text("no_paragraph", page=_MISTAKES_PAGE, key=key)
 
 
 def to_do_in_text(exercise: Exercise) -> Iterator[str]:
     """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
     master = exercises.path(exercise.id).parent / course.LAB
     if not exercise.text:
-        yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
+        yield author_text("no_text")
         return
     lab_text = "\n".join(one.cell.source for one in named_cells(master))
     yield from (f"text: {fault}" for fault in faults_of_text(exercise, lab_text))
@@ -143,22 +136,18 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     """
     words_of_lab = " ".join(lab_text.split())
     sentences = (" ".join(words.split()) for words in exercise.text)
-    yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in words_of_lab)
-    yield from (
-        f"“{words}” states a period, and no criterion judges it: a SameAsSolution takes rates={{topic: seconds}}"
-        for words, names in exercise.text.items()
-        if _PERIOD.search(words) and "rate" not in names
-    )
+    yield from (author_text("not_in_lab", words=words) for words in sentences if words not in words_of_lab)
+    for words, names in exercise.text.items():
+        if _PERIOD.search(words) and "rate" not in names:
+            yield author_text("unjudged_period", words=words)
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
-    yield from (
-        f"the criterion {name} is not mapped to any words of the task" for name in sorted(known - judged)
-    )
+    yield from (author_text("unmapped_criterion", name=name) for name in sorted(known - judged))
     of_criteria = {name for name in exercise.counts if name}
-    yield from (f"the criterion {name} does not exist" for name in sorted((judged | of_criteria) - known))
+    yield from (author_text("no_criterion", name=name) for name in sorted((judged | of_criteria) - known))
     for name, words in exercise.counts.items():
         if len(_SENTENCE.findall(words)) > _MAX_SENTENCES:
-            yield f"counts has more than {_MAX_SENTENCES} sentences about {name or 'the exercise'}"
+            yield author_text("long_counts", most=_MAX_SENTENCES, name=name or "the exercise")
 
 
 _PERIOD = re.compile(r"(?i)\bevery [\d.]+ s\b")
@@ -216,16 +205,12 @@ def broken_rules(master: Path) -> list[str]:
 def _beginning(cells: list[NamedCell]) -> Iterator[str]:
     head = list(itertools.takewhile(_is_text, cells))
     if _words(head) > _MAX_HEAD_WORDS:
-        yield f"begin by doing: {_words(head)} words before the first code cell; at most {_MAX_HEAD_WORDS} are allowed"
+        yield author_text("long_head", words=_words(head), most=_MAX_HEAD_WORDS)
     if not head or not _MINUTES.search(head[0].cell.source):
-        yield (
-            "minutes: write in the first text how long the lab takes and for whom, such as *20 minutes · for "
-            "beginners*"
-        )
+        yield author_text("no_minutes")
     task = next((place for place, one in enumerate(cells) if one.cell.kind is CellRole.SOLUTION), 0)
     if (before := _words(filter(_is_text, cells[:task]))) > _MAX_WORDS_BEFORE_A_TASK:
-        most = _MAX_WORDS_BEFORE_A_TASK
-        yield f"the first task comes soon: {before} words before the first task; at most {most} are allowed"
+        yield author_text("late_task", words=before, most=_MAX_WORDS_BEFORE_A_TASK)
 
 
 def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
@@ -235,10 +220,8 @@ def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
             # A repair keeps most lines of the broken code, which students get.
             written = sum(bool(line.strip()) for line in region.answer if line not in region.stub)
             if not (region.is_repair or written) or written > _MAX_SOLUTION_LINES:
-                yield (
-                    f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "
-                    f"{_MAX_SOLUTION_LINES} are allowed: give students the other lines, or split the cell in two"
-                )
+                words = {"name": one.name, "line": one.cell.line, "written": written}
+                yield author_text("large_task", **words, most=_MAX_SOLUTION_LINES)
 
 
 def _introductions(cells: list[NamedCell]) -> Iterator[str]:
@@ -251,7 +234,7 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
             line.endswith(".stop()") for line in one.cell.source.splitlines()
         )
         if not (_is_text(one) or speaks_for_itself or (_is_text(before) and sentences)):
-            yield f"a code cell is introduced: write a sentence before the code cell at line {one.cell.line}"
+            yield author_text("bare_code", line=one.cell.line)
 
 
 def _predictions(cells: list[NamedCell]) -> Iterator[str]:
@@ -259,10 +242,7 @@ def _predictions(cells: list[NamedCell]) -> Iterator[str]:
         # A cell that only defines or stops something has no result that a student could predict.
         shows = one.cell.source.startswith("%%bash") or "print(" in one.cell.source
         if one.cell.kind is CellRole.DEMONSTRATION and shows and _PREDICTION not in before.cell.source:
-            yield (
-                f"a demonstration is predicted: write a question '{_PREDICTION} …?' before line {one.cell.line}, "
-                "and its answer in a <details>"
-            )
+            yield author_text("no_prediction", line=one.cell.line)
 
 
 def _tasks(cells: list[NamedCell]) -> Iterator[str]:
@@ -270,10 +250,7 @@ def _tasks(cells: list[NamedCell]) -> Iterator[str]:
         if one.cell.kind is CellRole.SOLUTION and _is_text(before):
             for paragraph in _PARAGRAPH.split(_FOLD.sub("", before.cell.source)):
                 if len(_PARENTHESIS.findall(_CODE.sub("", paragraph))) > 1:
-                    yield (
-                        f"a task is plain: a paragraph before line {one.cell.line} has more than one "
-                        "parenthesis: write sentences, or an argument counts of the exercise"
-                    )
+                    yield author_text("parentheses", line=one.cell.line)
 
 
 def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
@@ -281,15 +258,12 @@ def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
         for found in _SELF_CHECK.finditer(one.cell.source):
             replies = _REPLY.findall(found["choices"])
             if set(replies) != {"✓", "✗"} or replies.count("✓") > 1:
-                yield (
-                    f"a self-check is answered by a click: in the text at line {one.cell.line}, write a <details> for "
-                    "each choice. Its reply begins with ✓ for the right choice and with ✗ for the others"
-                )
+                yield author_text("other_replies", line=one.cell.line)
 
 
 def _end(cells: list[NamedCell]) -> Iterator[str]:
     if not cells or "https://docs.ros.org/en/jazzy/" not in cells[-1].cell.source:
-        yield "closing link: add a link for further reading to the last text, such as https://docs.ros.org/en/jazzy/..."
+        yield author_text("no_closing_link")
 
 
 def _is_text(one: NamedCell) -> bool:

@@ -12,6 +12,7 @@ from autograder import exercises
 from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
+from autograder.authoring.author_texts import author_text
 from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
 from autograder.authoring.mutants import recorded_mutants
 from autograder.authoring.mutants.survey import survey, survey_by_judge
@@ -236,14 +237,14 @@ def _chosen(exercise: Exercise, only: Sequence[str] = ()) -> list[Answer]:
     found = list(answers([exercise.id]))
     if not found and exercise.enough:
         raise NothingToTry(
-            f"{exercise.id} has no answers yet: write some in the folders right and wrong of "
-            f"{answers_folder(exercise.id)}, as docs/adding-an-exercise.md shows"
+            author_text("no_answers", exercise=exercise.id, folder=answers_folder(exercise.id))
         )
     wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
     if found and not wanted:
+        known = ", ".join(answer.short_name for answer in found)
+        wanted_names = " or ".join(only)
         raise NothingToTry(
-            f"no answer to {exercise.id} has {' or '.join(only)} in its name. The answers are: "
-            + ", ".join(answer.short_name for answer in found)
+            author_text("no_such_answer", exercise=exercise.id, wanted=wanted_names, known=known)
         )
     return wanted
 
@@ -337,17 +338,11 @@ def _of_unsolved(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     verdict = reference_files.unsolved(exercise)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
-            yield (
-                f"earns points: {one.points:g} for “{one.title}”. Give students less code, or change this criterion "
-                "so that the given code fails"
-            )
+            yield author_text("earns_points", points=one.points, title=one.title)
     key = verdict.diagnosis.key if verdict is not None and verdict.diagnosis is not None else "no diagnosis"
     is_repair = exercise.hides_causes and exercise.enough
     if is_repair and not any(key in answer.diagnoses for answer in listed):
-        yield (
-            f"fails with {key}, as no wrong answer does: write the broken code as a wrong answer, or change it so that "
-            "it fails for the reason that you mean"
-        )
+        yield author_text("fails_otherwise", key=key)
 
 
 def _is_recorded(exercise: Exercise, is_stored: bool, tell: Callable[[str], object]) -> bool:
@@ -355,9 +350,5 @@ def _is_recorded(exercise: Exercise, is_stored: bool, tell: Callable[[str], obje
     changed = reference_files.record([exercise], only_check=is_stored, tell=tell)
     if not (is_stored and changed):
         return True
-    tell(
-        "The solution or the scenario has changed since the reference output was recorded. "
-        f"If the change is intended, run `{COMMAND} record {exercise.id}`, "
-        "look at the difference, and try again."
-    )
+    tell(author_text("not_recorded", command=COMMAND, exercise=exercise.id))
     return False

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
+from autograder.authoring.author_texts import author_text
 from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
@@ -62,14 +63,11 @@ def new_exercise(
             exist.
     """
     if not _ID.fullmatch(exercise_id):
-        raise CannotMake(
-            f"{exercise_id!r} is not an id: write the lab, a dot, and the exercise, in small letters, digits and _, "
-            "such as lab_8_1.battery"
-        )
+        raise CannotMake(author_text("no_id", id=exercise_id))
     lab = exercise_id.partition(".")[0]
     known = recipes()
     if recipe not in known:
-        raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
+        raise CannotMake(author_text("no_recipe", recipe=recipe, known=", ".join(known)))
     example = known[recipe]
     folder = _existing_lab(root, exercise_id) if to_lab else _chapter(root, chapter) / lab
     if not to_lab:
@@ -117,15 +115,10 @@ def _chapter(root: Path, name: str | None) -> Path:
     chapters = course.chapters(root)
     if name is None:
         if not chapters:
-            raise CannotMake(
-                f"{root / course.SOLUTIONS} contains no chapter yet: add the name of a new chapter, such as --chapter "
-                "01_my_chapter"
-            )
+            raise CannotMake(author_text("no_chapter", folder=root / course.SOLUTIONS))
         return chapters[-1].folder
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name, re.ASCII):
-        raise CannotMake(
-            f"{name!r} is not a valid name for a chapter's folder: use letters, digits, _ and -, such as 02_navigation"
-        )
+        raise CannotMake(author_text("bad_chapter", name=name))
     return root / course.SOLUTIONS / name
 
 
@@ -134,23 +127,18 @@ def _refuse_existing(root: Path, folder: Path) -> None:
     others = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == folder.name]
     for lab in (folder, *others):
         if lab.exists():
-            raise CannotMake(
-                f"{lab.relative_to(root)} already exists: choose another name, or add the exercise to that lab with "
-                "--lab"
-            )
+            raise CannotMake(author_text("lab_exists", lab=lab.relative_to(root)))
     if _is_a_module(folder.name):
-        raise CannotMake(
-            f"Python already has a module {folder.name}, which would hide the lab: choose another name for the lab"
-        )
+        raise CannotMake(author_text("module_exists", name=folder.name))
 
 
 def _existing_lab(root: Path, exercise_id: str) -> Path:
     name, _, exercise = exercise_id.partition(".")
     labs = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == name]
     if not labs or not (labs[0] / course.LAB).is_file():
-        raise CannotMake(f"the course has no lab {name} with a {course.LAB}: leave out --lab to make it")
+        raise CannotMake(author_text("no_lab", name=name))
     if there := sorted(labs[0].glob(f"{exercise}.*")):
-        raise CannotMake(f"{there[0].relative_to(root)} already exists: choose another name for the exercise")
+        raise CannotMake(author_text("exercise_exists", file=there[0].relative_to(root)))
     return labs[0]
 
 
