@@ -14,7 +14,7 @@ from IPython.display import display
 from autograder.notebook.nodes.background_nodes import replace_named, spin_in_background
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.robot_drivers import KEYBOARD, CornerHunt, Spiral, Tour
+from autograder.notebook.robot_drivers import KEYBOARD, CornerHunt, Spiral
 from autograder.notebook.robot_node import RobotNames, RobotNode
 from autograder.robot.motion import RADIUS, ROOM
 from autograder.robot.plan import Plan, nose
@@ -90,10 +90,6 @@ class LiveRobot:
         if self._picture.running and not self._stranger:
             # The button is not a part of the picture, so that it is not redrawn while a student clicks it.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
-
-    def talk(self, topic: str) -> None:
-        """Make the robot roll to the door, and report its position twice a second on a topic of type ``String``."""
-        self._node.play(Tour(self._node, topic))
 
     def walk_numbers(self, action_type: Any, name: str) -> None:
         """Make the robot walk a quarter of a circle for each number that arrives as an action's feedback."""

@@ -19,7 +19,6 @@ from geometry_msgs.msg import Twist, Vector3
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.task import Future
 from small_robot_interfaces.action import WalkTo
-from std_msgs.msg import String
 
 from autograder.notebook.nodes.ros_session import is_destroyed
 from autograder.robot.motion import FASTEST, FASTEST_TURN, ROOM, STILL, TICK, Velocity, towards
@@ -119,47 +118,9 @@ def _answer(x: float, y: float) -> GoalResponse:
     return GoalResponse.ACCEPT if inside else GoalResponse.REJECT
 
 
-SAYS_EVERY = 5
-"""The number of simulation steps between two messages about the position."""
 METERS = 0.1
 """The radius in meters of the arc for the number 1. For any other number, the radius is multiplied by this number."""
-_TOUR = ((2.5, 2.4), (3.6, 2.0))
-"""The points on the robot's way to the door, in meters."""
 _QUARTER = math.pi / 2
-
-
-class Tour:
-    """A scene in which the robot rolls to the door and reports its position on a topic.
-
-    Args:
-        topic: The topic for the reports, of type ``std_msgs/msg/String``.
-    """
-
-    def __init__(self, node: Node, topic: str) -> None:
-        self._publisher = node.create_publisher(String, topic, 10)
-        self._way = deque(_TOUR)
-        self._steps = 0
-        self.says = ""
-
-    @property
-    def is_over(self) -> bool:
-        """True if the robot has arrived, or a wall stopped it."""
-        return not self._way
-
-    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """Return the velocity for the next step; None at the end. Report the position every fifth step."""
-        if bumped:
-            self._way.clear()
-        if self._way and math.dist(pose.point, self._way[0]) < NEAR_ENOUGH:
-            self._way.popleft()
-        if not self._way:
-            self.says = ""
-            return None
-        if self._steps % SAYS_EVERY == 0:
-            self.says = f"I am at x = {pose.x:.1f} m, y = {pose.y:.1f} m"
-            self._publisher.publish(String(data=self.says))
-        self._steps += 1
-        return towards(pose, self._way[0])
 
 
 class Spiral:
@@ -258,7 +219,7 @@ class CornerHunt:
         return None
 
 
-Scene = Tour | Spiral | CornerHunt
+Scene = Spiral | CornerHunt
 """A scene, which drives the robot step by step until the scene is over."""
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from my_robot_interfaces.action import Fibonacci
 from small_robot_interfaces.action import WalkTo
 
-from autograder.notebook.robot_drivers import SAYS_EVERY, CornerHunt, Scene, Spiral, Tour
+from autograder.notebook.robot_drivers import CornerHunt, Scene, Spiral
 from autograder.robot.motion import ROOM, START, STILL, TICK, Moved, Pose, move
 from tests.cases import cases
 
@@ -18,13 +17,7 @@ if TYPE_CHECKING:
 
 
 class FakeNode:
-    """Keeps what a scene publishes, and the callback that it subscribes with."""
-
-    def __init__(self) -> None:
-        self.published: list[str] = []
-
-    def create_publisher(self, *_: Any) -> Any:
-        return SimpleNamespace(publish=lambda message: self.published.append(message.data))
+    """Keeps the callback that a scene subscribes with."""
 
     def create_subscription(
         self, message_type: Any, topic: str, callback: Callable[[Any], None], _: int
@@ -47,25 +40,6 @@ def play(scene: Scene, pose: Pose = START) -> tuple[Moved, int, list[str]]:
         moved, steps = move(moved.pose, velocity, TICK, ROOM), steps + 1
         said.append(scene.says)
     return moved, steps, said
-
-
-def test_on_its_tour_it_says_where_it_is_and_comes_to_the_door(node: FakeNode) -> None:
-    tour = Tour(node, "chatter")  # type: ignore[arg-type]
-    assert not tour.is_over
-    moved, steps, said = play(tour)
-    assert tour.is_over
-    assert not moved.bumped
-    assert moved.pose.x == pytest.approx(ROOM.door[0] - 0.5, abs=0.2)
-    assert node.published[0] == "I am at x = 1.0 m, y = 2.0 m"
-    assert len(node.published) == len(set(node.published)) == -(-steps // SAYS_EVERY)
-    assert said[-1] == node.published[-1]
-    assert tour.says == ""
-
-
-def test_a_wall_ends_the_tour(node: FakeNode) -> None:
-    tour = Tour(node, "chatter")  # type: ignore[arg-type]
-    assert tour.next(START, bumped=True) is None
-    assert tour.is_over
 
 
 def test_it_walks_a_quarter_of_a_circle_for_each_number(node: FakeNode) -> None:
@@ -117,19 +91,15 @@ def test_behind_a_wall_it_walks_no_further(node: FakeNode) -> None:
     assert play(spiral)[0].bumped, "an arc of a billion steps takes no more memory than one"
 
 
-CELLS = cases(__file__, "CELLS")  # fmt: skip
+(CELL,) = cases(__file__, "CELLS")
 
 
 @pytest.mark.ros
-def test_a_students_listener_hears_it_and_it_reads_feedback(run_cells: Callable[..., list[Any]]) -> None:
+def test_it_walks_the_feedback_of_a_students_action(run_cells: Callable[..., list[Any]]) -> None:
     imports = (
-        "import time\nfrom rclpy.node import Node\nfrom std_msgs.msg import String\n"
-        "from autograder.notebook import spinning, start_robot, start_ros\nstart_ros()"
+        "import time\nfrom rclpy.node import Node\n"
+        "from autograder.notebook import start_robot, start_ros\nstart_ros()"
     )
-    tour, spiral = ([part.text for part in shown if part.output_type == "stream"]
-                    for shown in run_cells(imports, *CELLS)[1:])  # fmt: skip
-    lines = "".join(tour).splitlines()
-    assert lines[-1] == "0.0 True True"
-    assert len(lines) > 5
-    assert all(line.startswith("I am at x = ") for line in lines[:-1])
-    assert "".join(spiral).split() == ["0.8", "2.0"]
+    _, shown = run_cells(imports, CELL)
+    spiral = "".join(part.text for part in shown if part.output_type == "stream")
+    assert spiral.split() == ["0.8", "2.0"]
