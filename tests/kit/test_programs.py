@@ -157,28 +157,6 @@ def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
     assert [mistake.key for mistake in PROGRAMS.mistakes if mistake.recognize(evidence(quiet, loud))] == []
 
 
-@pytest.mark.parametrize(
-    ("line", "says"),
-    [
-        ("node = ListenerNode()", "listener: listener.py makes a node of the class ListenerNode"),
-        ("node = Mine(ListenerNode)", ""),
-    ],
-)
-def test_a_class_that_was_not_copied_into_its_file_is_named_with_the_file(line: str, says: str) -> None:
-    frame = '  File "/x/listener.py", line 9, in main'
-    error = "NameError: name 'ListenerNode' is not defined"
-    crash = [
-        *map(said, ("Traceback (most recent call last):", frame, f"    {line}", error)),
-        subject("exited"),
-    ]
-    told = [m.recognize(evidence([said("hello")], crash)) for m in PROGRAMS.mistakes if m.key == "crashed"]
-    texts = [advice.text for advice in told if advice]
-    assert [text for text in texts if "makes a node" in text] == [
-        text for text in texts if says and says in text
-    ]
-    assert bool(texts) is bool(says)
-
-
 def report(*modules: str, programs: tuple[str, ...] = (), missing: str = "") -> WorkspaceReport:
     package = PackageReport(PACKAGE, "ament_python", programs, (), (), modules)
     return WorkspaceReport("built", built=True, packages=(package,), missing=missing)

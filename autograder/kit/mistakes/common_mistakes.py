@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections import Counter
 from dataclasses import replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import re2
@@ -18,7 +16,7 @@ from autograder.kit.reported_texts import said_first_after
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from autograder.kit.evidence import Event, Evidence, Part
 
@@ -210,44 +208,6 @@ INT_IN_A_FLOAT = mistake(
     certain=True,
 )
 """The mistake of a whole number in a field for numbers with a point, of which rclpy says nothing."""
-
-
-def everything_twice(role: str) -> Mistake:
-    """Return the mistake "everything twice": two nodes or timers do the same work, so each message arrives twice."""
-
-    def are_pairs(evidence: Evidence) -> bool:
-        return any(
-            _are_pairs(evidence.main.of("message", topic), evidence.reference.parts, topic)
-            for topic in _wanted(evidence, role)
-        )
-
-    return mistake(
-        "everything_twice",
-        are_pairs,
-        "Every message arrives twice: two of your nodes (or two timers) do the same work.",
-        "Make the node only once. In a notebook, a node from an earlier run of the cell may still exist.",
-        certain=True,
-    )
-
-
-def _are_pairs(messages: Sequence[Event], expected: Sequence[Part], topic: str) -> bool:
-    heard = [str(event.data["fields"]) for event in messages]
-    times = Counter(heard)
-    pairs = [times[text] for text in heard[:-1]]
-    if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
-        return False
-    # Each publisher numbers its own messages, so equal numbers show that there are two publishers.
-    numbers = [event.data.get("number") for event in messages]
-    if len(set(numbers)) < len(numbers):
-        return True
-    # A single publisher that counts in a circle also repeats texts. One that repeats each text at once has two timers,
-    # unless the solution, of which then the messages have to be recorded, repeats them, too.
-    due = [str(event.data["fields"]) for part in expected for event in part.of("message", topic)]
-    return bool(due) and _repeats(heard) and not _repeats(due)
-
-
-def _repeats(texts: Sequence[str]) -> bool:
-    return sum(a == b for a, b in pairwise(texts)) >= len(texts) // 3
 
 
 def never_spun(role: str) -> Mistake:

@@ -38,7 +38,7 @@ class Stage(Enum):
 _Stages = dict[Stage, tuple[Mistake, ...]]
 _ONLY: dict[str, _Stages] = {
     "publisher": {
-        Stage.FIRST: (common.everything_twice("publisher"), common.INT_IN_A_FLOAT),
+        Stage.FIRST: (common.INT_IN_A_FLOAT,),
         Stage.JOINED: (common.qos_mismatch("publisher"),),
         Stage.SILENT: (never_published(),),
     },

@@ -9,12 +9,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
-import re2
-
 from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
 from autograder.kit.mistakes import package_mistakes, unfinished
-from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import RunsPrograms, report_of
 
@@ -264,9 +261,8 @@ class Programs:
         yield Mistake("entry_point", self._another_program)
         for program in self._programs:
             late = () if program.ends_by_itself else (Mistake("ended_too_early", unfinished.ended_too_early),)
-            copied = Mistake("crashed", partial(_class_not_in_its_file, program), certain=True)
             wrong = _Wrong(program)
-            for mistake in (copied, *program.node.mistakes, *late):
+            for mistake in (*program.node.mistakes, *late):
                 yield replace(mistake, recognize=partial(wrong.recognize, mistake))
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
@@ -321,25 +317,6 @@ class _Wrong:
         view = self._view(evidence)
         advice = mistake.recognize(view) if view else None
         return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
-
-
-_MADE_OF_NOTHING = re2.compile(
-    r"\n +\w+ = (?P<made>[A-Z]\w*)\([^\n]*\n(?:[ ~^]*\n)?NameError: name '(?P<unknown>\w+)' is not defined"
-)
-
-
-def _class_not_in_its_file(program: LabProgram, evidence: Evidence) -> Advice | None:
-    """Return advice if the program uses a class that its file does not contain."""
-    traceback = traceback_of(evidence)
-    found = _MADE_OF_NOTHING.search(traceback)
-    if found is None or found["made"] != found["unknown"]:
-        return None
-    file = f"{program.file or program.name}.py"
-    return Advice(
-        f"{file} uses the class {found['made']}, but does not contain it (NameError).",
-        f"Copy your class {found['made']} into {file}, above main(), and save the file.",
-        traceback,
-    )
 
 
 def _and(names: Sequence[str]) -> str:

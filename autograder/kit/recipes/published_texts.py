@@ -322,7 +322,7 @@ class Counting:
         return Advice(
             f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",
             f"Change the counter once for each message that you publish: with {self._statement(expected)} at the end "
-            "of the method, without a loop, and with only one timer.",
+            "of the method, without a loop, and with only one timer of only one node.",
         )
 
     def _statement(self, expected: PublisherSeen) -> str:
