@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import with_placeholders
@@ -122,6 +124,16 @@ def mistake(
         return Advice(text.format(shown), next_step.format(shown), uses=uses) if shown else None
 
     return Mistake(key, recognize, certain)
+
+
+def card_words(module: str) -> dict[str, tuple[str, str]]:
+    """Return the two texts of each mistake that a module knows, from the TOML file beside it, for :func:`mistake`.
+
+    Args:
+        module: The path of the module, its ``__file__``.
+    """
+    rows = tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
+    return {name: (row["text"], row["next_step"]) for name, row in rows.items()}
 
 
 def unless(

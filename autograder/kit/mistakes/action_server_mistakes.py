@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.mistakes.crashes import raised, traceback_of
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.outcomes import ABORTED, all_goals
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
     from autograder.kit.outcomes import SentGoal
+
+_WORDS = card_words(__file__)
 
 
 def _result_missing(evidence: Evidence) -> Advice | None:
@@ -79,22 +81,11 @@ UNREAD = 2
 """If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
 while it works.
 """
-NO_FREE_THREAD = (
-    "Your server keeps working and does not read the cancel request, because the only thread that spins the node is "
-    "busy with the execute callback.",
-    "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, executor=MultiThreadedExecutor()), so "
-    "that another thread can read the cancel request.",
-)
+NO_FREE_THREAD = _WORDS["no_free_thread"]
 """What a server does that reads no cancel request while it works, and the next step."""
 RESULT_MISSING = Mistake("result_missing", _result_missing, certain=True)
 EXCEPTION_IN_EXECUTE = Mistake("exception_in_callback", _exception_in_execute, certain=True)
 CANCEL_REFUSED = mistake(
-    "cancel_not_accepted",
-    _refuses_to_cancel,
-    "Your server refuses the cancel request. rclpy does this if the ActionServer has no cancel_callback, or if the "
-    "cancel_callback does not return CancelResponse.ACCEPT.",
-    "Pass cancel_callback=... to the ActionServer: a method that returns CancelResponse.ACCEPT. In the loop of the "
-    "execute callback, check is_cancel_requested of the goal handle.",
-    certain=True,
+    "cancel_not_accepted", _refuses_to_cancel, *_WORDS["cancel_not_accepted"], certain=True
 )
 CANCEL_UNREAD = mistake("cancel_not_accepted", _reads_no_request, *NO_FREE_THREAD)

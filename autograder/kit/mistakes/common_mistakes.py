@@ -11,7 +11,7 @@ import re2
 
 from autograder.kit.counterparts import Qos
 from autograder.kit.mistakes.hangs import UNSPUN, answered, something_spins
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.reported_texts import said_first_after
 from autograder.kit.runners import processes
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from autograder.kit.evidence import Event, Evidence, Part
+
+_WORDS = card_words(__file__)
 
 WORDS = {
     "publisher": ("publishes on", "topic", "create_publisher"),
@@ -94,15 +96,7 @@ def message_type(role: str) -> Mistake:
         name = next((name for name in sorted(wanted) if made.get(name, wanted[name]) != wanted[name]), None)
         return (name, made[name], wanted[name], *wanted[name].split("/")) if name else None
 
-    return mistake(
-        "message_type",
-        mixed_up,
-        "On {0[0]} your node uses the type {0[1]}; the other side uses {0[2]}. Nodes whose types differ are not "
-        "connected.",
-        "Import and use {0[5]} from {0[3]}.{0[4]}.",
-        certain=True,
-        uses=WORDS[role][2:],
-    )
+    return mistake("message_type", mixed_up, *_WORDS["message_type"], certain=True, uses=WORDS[role][2:])
 
 
 def qos_mismatch(role: str) -> Mistake:
@@ -128,10 +122,7 @@ KEEP_THE_PERIOD = (
     "Give create_timer the period in seconds, publish once in its callback, and leave time.sleep out of it."
 )
 """The next step for a node that publishes at a wrong rate."""
-NOT_LATCHED = (
-    "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
-    "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",
-)
+NOT_LATCHED = _WORDS["not_latched"]
 """The two texts about a publisher for which :func:`is_not_latched` is true."""
 
 
@@ -199,14 +190,7 @@ def _floats(fields: Mapping[str, object], path: str = "") -> Iterator[tuple[str,
             yield f"{path}{name}", value
 
 
-INT_IN_A_FLOAT = mistake(
-    "field_type",
-    _int_as_float,
-    "On {0[0]}, your {0[1]} arrives as {0[2]:g}. The cause: your code sets it to a whole number (an int), but the "
-    "field is a float64, and ROS reads the bytes of the int as a float.",
-    "Write the number with a point: 1.0 for 1, 0.0 for 0. Convert a number that your code calculates with float(...).",
-    certain=True,
-)
+INT_IN_A_FLOAT = mistake("field_type", _int_as_float, *_WORDS["field_type"], certain=True)
 """The mistake of a whole number in a field for numbers with a point, of which rclpy says nothing."""
 
 
@@ -215,9 +199,7 @@ def never_spun(role: str) -> Mistake:
     return mistake(
         UNSPUN,
         lambda evidence: _silent_node(evidence, role) and not _was_spun(evidence.main, role),
-        "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
-        "In a program, call rclpy.spin(your_node) at the end of main(). In a notebook, write "
-        "`with spinning(your_node):`, which spins the node.",
+        *_WORDS["never_spun"],
     )
 
 
@@ -226,12 +208,7 @@ def went_deaf(role: str) -> Mistake:
     return mistake(
         "node_taken_from_executor",
         lambda evidence: _silent_node(evidence, role) and _was_spun(evidence.main, role),
-        "Your node receives nothing any more. There are three possible causes: another spin took the node from its "
-        "executor, the node was never added to an executor, or a callback that is an `async def` awaits something "
-        "that never comes.",
-        "Spin a node in one place only. If you call rclpy.spin_once or spin_until_future_complete in a callback, or "
-        "while another executor spins the node, that executor loses the node for good. In a callback, do not await "
-        "anything that needs another callback of the same group.",
+        *_WORDS["node_taken_from_executor"],
     )
 
 
@@ -261,17 +238,7 @@ def _left_an_answer(part: Part) -> bool:
     return not said_first_after(last, part) and acts.isdisjoint(event.kind for event in later)
 
 
-AWAITS_IN_VAIN = mistake(
-    "await_in_same_group",
-    _awaits_in_vain,
-    "An answer came, and your node spins, but the code that waits for the answer never goes on. Either that code "
-    "waits for rclpy.spin(...), which does not return, or it awaits the answer inside a callback of the same "
-    "callback group that the answer needs.",
-    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) instead "
-    "of rclpy.spin(your_node): it returns when the answer is there. In a callback, either give the client its own "
-    "callback group (a ReentrantCallbackGroup or a new MutuallyExclusiveCallbackGroup), or move the code that needs "
-    "the answer into a function and pass that function to the add_done_callback(...) of the future.",
-)
+AWAITS_IN_VAIN = mistake("await_in_same_group", _awaits_in_vain, *_WORDS["await_in_same_group"])
 """The mistake of code that never goes on after its answer came, because the code itself blocks what it waits for.
 
 Recipes list this mistake after :data:`HANGS`, and before the mistakes of a node that is not spun.

@@ -25,11 +25,13 @@ from autograder.kit.goal_reports import (
     unshown_feedback,
 )
 from autograder.kit.mistakes.crashes import meant, on_purpose
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.reported_texts import mentions, not_filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
+
+_WORDS = card_words(__file__)
 
 
 # --- the server, and the goal -------------------------------------------------------------------------------------
@@ -40,14 +42,7 @@ def _order_never_filled(evidence: Evidence) -> bool:
     return bool(made) and not any(made)
 
 
-ORDER_NEVER_FILLED = mistake(
-    "field_typo",
-    _order_never_filled,
-    "The goal asks for order 0: your code did not set the goal's field `order`.",
-    "Set the field `order` of your goal, as in Fibonacci.Goal(order=...). Check the spelling: a misspelled "
-    "keyword is ignored silently.",
-    certain=True,
-)
+ORDER_NEVER_FILLED = mistake("field_typo", _order_never_filled, *_WORDS["field_typo"], certain=True)
 
 
 def _wrong_order(evidence: Evidence) -> str:
@@ -55,15 +50,7 @@ def _wrong_order(evidence: Evidence) -> str:
     return "" if wrong == NOT_AWAITED or wrong.startswith(NO_GOAL) else wrong
 
 
-WRONG_ORDER = mistake(
-    "wrong_order",
-    _wrong_order,
-    "The judge received {}, but the task asks for one goal with the given order.",
-    "Send exactly one goal, with the order that your function or program was given. In a program, this is "
-    "sys.argv[1]. An order of 0 is valid, too. If a timer sends the goal, call cancel() on the timer after that. Do "
-    "not cancel the goal.",
-    certain=True,
-)
+WRONG_ORDER = mistake("wrong_order", _wrong_order, *_WORDS["wrong_order"], certain=True)
 
 
 def _ended_before(evidence: Evidence) -> str:
@@ -81,23 +68,14 @@ def _ended_before(evidence: Evidence) -> str:
     return ""
 
 
-ENDED_TOO_EARLY = mistake(
-    "ended_too_early",
-    _ended_before,
-    "Your client sent its goal and ended {}. An answer may take half a second or more.",
-    "Spin until the answer has arrived: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), "
-    "or rclpy.spin(your_node) if callbacks process the answers. A single spin_once is not enough, because it handles "
-    "only one event.",
-)
+ENDED_TOO_EARLY = mistake("ended_too_early", _ended_before, *_WORDS["ended_too_early"])
 
 # --- a goal that is refused ---------------------------------------------------------------------------------------
 
 RESULT_OF_REJECTED_GOAL = mistake(
     "result_of_rejected_goal",
     lambda evidence: evidence.part(REFUSED).first("result_request"),
-    "The goal was rejected, but your client still requested its result. A rejected goal has no result, so the status "
-    "that comes back is 0, UNKNOWN.",
-    "First check `accepted` of the goal handle. If it is False, report that the goal was rejected, and end.",
+    *_WORDS["result_of_rejected_goal"],
 )
 
 
@@ -108,11 +86,7 @@ def crashed_by_refusal(evidence: Evidence) -> bool:
 
 
 STAYS_AFTER_REFUSAL = mistake(
-    "never_ended",
-    lambda evidence: refused_as_seen(evidence) == NOT_ENDED,
-    "Your client says that the goal was rejected, and then waits forever for a result that will not come.",
-    "End the client when the goal is rejected. In a notebook, raise an error or return where `accepted` of the goal "
-    "handle is False. In a program, report the rejection there, call rclpy.shutdown() and return.",
+    "never_ended", lambda evidence: refused_as_seen(evidence) == NOT_ENDED, *_WORDS["never_ended"]
 )
 
 
@@ -141,18 +115,11 @@ def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
     return (sent, sent - missing) if missing and part.first("result_request") else None
 
 
-FEEDBACK_NOT_SHOWN = mistake(
-    "feedback_not_shown",
-    _feedback_not_shown,
-    "{0[0]} feedback messages were sent, but your client showed only {0[1]} of them.",
-    "Pass a feedback_callback to send_goal_async. In this callback, log the feedback.partial_sequence of each "
-    "message that it receives.",
-)
+FEEDBACK_NOT_SHOWN = mistake("feedback_not_shown", _feedback_not_shown, *_WORDS["feedback_not_shown"])
 RESULT_NOT_REQUESTED = mistake(
     "result_not_reported",
     lambda evidence: asked_for(evidence.part(LATE)) and not evidence.part(LATE).first("result_request"),
-    "Your client sent its goal, but never requested the result.",
-    "Call get_result_async() of the goal handle after the goal was accepted, and wait for the future that it returns.",
+    *_WORDS["result_not_reported"],
 )
 
 
@@ -212,10 +179,4 @@ def _returns_another_value(evidence: Evidence) -> tuple[str, str] | None:
     return (value, "but should return an empty list if its goal is rejected") if value else None
 
 
-NOT_RETURNED = mistake(
-    "not_returned",
-    _returns_another_value,
-    "Your function returns {0[0]}, {0[1]}.",
-    "End the function with `return list(...)` of the sequence in the result. Where `accepted` of the goal handle is "
-    "False, write `return []`. A string, the whole result message or None is not a list.",
-)
+NOT_RETURNED = mistake("not_returned", _returns_another_value, *_WORDS["not_returned"])

@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.model import Advice, Mistake, card_words
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
+
+_WORDS = card_words(__file__)
 
 LOOPS = 2.0
 """Seconds of processor time in one callback after which it is in an endless loop, however busy the machine is."""
@@ -172,75 +174,31 @@ WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
 """Hangs that no time can end. In the others, the subject may be busy with something that comes to an end."""
 
 _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
-    (
-        "nested_spin",
-        lambda found: any(map(_spins_in_callback, found)),
-        "{who} spins, and this spin never gets what it waits for: the executor that called the callback cannot go on "
-        "before the callback returns.",
-        "Remove the spin from the callback. If the callback needs an answer, move the code that uses the answer into "
-        "another function, and pass that function to the add_done_callback(...) of the answer's future.",
-    ),
+    ("nested_spin", lambda found: any(map(_spins_in_callback, found)), *_WORDS["nested_spin"]),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
-        "{who} makes the blocking call {call}(){called} and waits forever: whatever would take in the answer, the "
-        "callback group or the only thread that spins, is busy with this callback.",
-        "Write {call}_async instead of {call}: in an `async def` as `await ….{call}_async(...)`. Otherwise move the "
-        "code that uses the answer into another function, and pass that function to the add_done_callback(...) of the "
-        "future that {call}_async returns.",
+        *_WORDS["call_in_same_group"],
     ),
-    (
-        "rate_never_spun",
-        lambda found: any(map(_sleeps_on_rate, found)),
-        "The sleep() of your rate{slept} waits forever: a rate is a timer, and no thread is free to run that timer.",
-        "Use create_timer and rclpy.spin instead of the loop. If the loop has to stay, spin the node in a second "
-        "thread; if the loop is inside a callback, use a MultiThreadedExecutor.",
-    ),
+    ("rate_never_spun", lambda found: any(map(_sleeps_on_rate, found)), *_WORDS["rate_never_spun"]),
     (
         "callback_never_returns",
         lambda found: any(map(_executes_a_goal, found)),
-        "Your execute callback {callback}() got a goal and did not return.{stays} Either it loops or waits forever, "
-        "or each number takes longer than the one before, for example because it computes every number from the "
-        "beginning.",
-        "Keep the numbers found so far in a list, add one number in each turn of the loop, and leave the loop when "
-        "there are enough. A pause in each turn, such as time.sleep(0.5), is right.",
+        *_WORDS["goal_never_returns"],
     ),
-    (
-        "callback_never_returns",
-        lambda found: bool(_stuck_callback(found)),
-        "Your callback {callback}() was called and never returned: it loops, sleeps or waits.{stays} Meanwhile the "
-        "node does nothing else.",
-        "Let a callback do one short step and return. To go on when an answer arrives, give its future a function: "
-        "future.add_done_callback(your_function). For work that is repeated, make a timer (create_timer). Do not "
-        "use `while True` or time.sleep in callbacks.",
-    ),
+    ("callback_never_returns", lambda found: bool(_stuck_callback(found)), *_WORDS["callback_never_returns"]),
     (
         "node_taken_from_executor",
         lambda found: (
             any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
         ),
-        "The blocking call {call}(){called} waits forever although another thread spins, because that thread's "
-        "executor has lost the node.",
-        "Spin a node in one place only. If you call rclpy.spin_once or spin_until_future_complete while another "
-        "executor spins the node, that executor loses the node.",
+        *_WORDS["node_taken_from_executor"],
     ),
-    (
-        "call_never_spun",
-        lambda found: any(map(_blocks, found)),
-        "The blocking call {call}(){called} waits forever: the answer has come, but nothing spins the node, so the "
-        "node does not receive the answer.",
-        "Use the method whose name ends in _async (call_async, send_goal_async, get_result_async), and wait for the "
-        "future that it returns with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0). Or "
-        "spin the node in a background thread while you use {call}().",
-    ),
+    ("call_never_spun", lambda found: any(map(_blocks, found)), *_WORDS["call_never_spun"]),
     (
         UNSPUN,
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
-        "All threads of your program are busy with your own code, such as a loop.{stays} Nothing spins the node, so "
-        "none of its callbacks is ever called.",
-        "Write rclpy.spin(your_node) instead of the loop that waits; if you wait for an answer, write "
-        "rclpy.spin_until_future_complete(your_node, your_future). Or keep your loop, and spin the node in a second "
-        "thread.",
+        *_WORDS["never_spun"],
     ),
 )
 

@@ -11,13 +11,15 @@ import re2
 from autograder import known_errors
 from autograder.kit.bench import Pace
 from autograder.kit.mistakes.traceback_lines import own_line
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.runners import PackageReport
+
+_WORDS = card_words(__file__)
 
 
 def build_report(part: Part) -> WorkspaceReport | None:
@@ -79,30 +81,20 @@ BUILD = (
     mistake(
         "no_workspace",
         lambda evidence: _trouble(evidence, "no_workspace", "no_package"),
-        "There is nothing to build: {0.line}.",
-        "A workspace is a folder that contains a folder `src`. Make each package inside `src`, with `ros2 pkg create`.",
+        *_WORDS["no_workspace"],
         certain=True,
     ),
     mistake(
         "bad_package",
         lambda evidence: _trouble(evidence, "bad_package"),
-        "A package cannot be built: {0.line}.",
-        "Correct package.xml. colcon does not report that this file is not valid, and builds the package as another "
-        "type.",
+        *_WORDS["bad_package"],
         certain=True,
     ),
-    mistake(
-        "syntax_error",
-        _unreadable,
-        "Python could not read {0[0]} when it built {0[1].package}: {0[1].line}",
-        "In this line or just before it, a bracket, a quotation mark, a colon or the indentation is wrong.",
-        certain=True,
-    ),
+    mistake("syntax_error", _unreadable, *_WORDS["syntax_error"], certain=True),
     mistake(
         "entry_point",
         lambda evidence: _trouble(evidence, "entry_point"),
-        "colcon build fails in {0.package}: setup.py has an entry point of the wrong form.",
-        "{0.line}",
+        *_WORDS["entry_point"],
         certain=True,
     ),
     Mistake("build_failed", _build_failed, certain=True),

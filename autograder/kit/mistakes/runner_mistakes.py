@@ -8,7 +8,7 @@ import re2
 
 from autograder.kit.mistakes.crashes import OTHER_CRASHES
 from autograder.kit.mistakes.package_mistakes import BUILD, EntryPoint, in_package
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.runners import (
     Launches,
     LaunchesFromPackage,
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.runners import Runner
+
+_WORDS = card_words(__file__)
 
 OF_THE_WORKSPACE: Mapping[type[Runner], Callable[[Any], Sequence[Mistake]]] = {
     RunsProgram: lambda runs: in_package(runs.package, EntryPoint(runs.package, runs.program)),
@@ -130,21 +132,9 @@ NOTHING_LAUNCHED = (
     mistake(
         "nothing_on_the_graph",
         lambda evidence: _nodeless(evidence, started=False),
-        "The launch file started no program.",
-        "Put a Node(package=..., executable=...) for each program into the list that LaunchDescription gets. In XML, "
-        "write <node pkg=... exec=.../> inside <launch>.",
+        *_WORDS["nothing_started"],
     ),
-    mistake(
-        "nothing_on_the_graph",
-        lambda evidence: _nodeless(evidence, started=True),
-        "The launch file started a program, but no node appeared on the graph.",
-        "Start each program alone, with `ros2 run` and its package, and read what it prints.",
-    ),
-    mistake(
-        "ended_too_early",
-        lambda evidence: evidence.main.ending is not None,
-        "The launch ended before its programs had done their work. A launch ends when the last of them has ended.",
-        "Start each program alone, with `ros2 run` and its package, and read what it prints.",
-    ),
+    mistake("nothing_on_the_graph", lambda evidence: _nodeless(evidence, started=True), *_WORDS["no_node"]),
+    mistake("ended_too_early", lambda evidence: evidence.main.ending is not None, *_WORDS["ended_too_early"]),
 )
 """The mistakes that are checked last under a launch."""

@@ -9,11 +9,13 @@ import re2
 from autograder.kit.giving_up import ended_at_once
 from autograder.kit.mistakes.common_mistakes import WORDS, worked
 from autograder.kit.mistakes.crashes import traceback_of
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import Advice, Mistake, card_words, mistake
 from autograder.kit.runners import report_of
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
+
+_WORDS = card_words(__file__)
 
 STEP_MISSING = (
     "Find the TODO in your code and write that step. In a notebook, the hints are below the cell; each opens "
@@ -66,14 +68,7 @@ def _usage_message(evidence: Evidence) -> str:
     return told[0].strip() if told and not asked else ""
 
 
-USAGE_MESSAGE = mistake(
-    "usage_message",
-    _usage_message,
-    "Your program did not accept the arguments that the check gave it: “{}”.",
-    "Check how your program counts its arguments. sys.argv[0] is the program's name, so len(sys.argv) is 2 for one "
-    "argument, 3 for two and 4 for three. Negative numbers are valid, too.",
-    certain=True,
-)
+USAGE_MESSAGE = mistake("usage_message", _usage_message, *_WORDS["usage_message"], certain=True)
 
 
 _WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
@@ -178,9 +173,7 @@ def _works(part: Part) -> bool:
 NEVER_CONSTRUCTED = mistake(
     "never_ended",
     lambda evidence: any(_never_constructed(part) and not _works(part) for part in evidence),
-    "The __init__ of your node never returns: it has a loop without end, or waits for something.",
-    "In __init__, only make what the node needs, such as publishers and timers. Let callbacks do the work. Do not "
-    "loop or wait in __init__.",
+    *_WORDS["never_ended"],
     certain=True,
 )
 
@@ -215,11 +208,7 @@ NOTHING_THERE = (
         mistake(
             "nothing_on_the_graph",
             found,
-            "{} node of yours appeared on the graph.",
-            "In a program, call rclpy.init() in main(), make your node and spin it, which keeps the program running. "
-            "In a notebook, make the node in your function (start_ros() has started ROS), and do all the work before "
-            "the function returns. If your code does that already, do not set domain_id or ROS_DOMAIN_ID: the judge "
-            "looks for your node only in the domain in which the judge started it.",
+            *_WORDS["nothing_on_the_graph"],
             certain=found is _surely_without_node,
         )
         for found in (_surely_without_node, _without_node)

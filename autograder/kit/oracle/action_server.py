@@ -9,7 +9,7 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes.action_server_mistakes import NO_FREE_THREAD, UNREAD, result_type
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Finding, Mistake, mistake
+from autograder.kit.model import Finding, Mistake, card_words, mistake
 from autograder.kit.oracle.goals_seen import ENDED, GoalsSeen
 from autograder.kit.outcomes import CANCELED, SUCCEEDED, goal, status_text
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
+
+_WORDS = card_words(__file__)
 
 CANCELED_UNASKED = "with event CANCELED"
 """In what rclpy raises if canceled() is called for a goal that no client has asked to cancel."""
@@ -192,69 +194,14 @@ def _cancel_not_read(seen: GoalsSeen) -> bool:
 Row = tuple[str, "Callable[[GoalsSeen], object]", str, str, bool]
 """A mistake: its key, what shows it, the two texts with placeholders for that, and whether the evidence proves it."""
 BESIDE_ANOTHER: tuple[Row, ...] = (
-    (
-        "older_goal_ended",
-        _canceled_unasked,
-        "When a second goal came, your server called canceled() for the older one. No client had asked to cancel that "
-        "goal, so canceled() raised an error.",
-        "Serve both goals, each with its own result. (A server that gives up a goal by itself calls abort().)",
-        True,
-    ),
-    (
-        "older_goal_ended",
-        _ended_for_another,
-        "When a second goal came, your server ended the older one as {}. The task asks it to serve both, each with its "
-        "own result.",
-        "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until "
-        "the older one has ended.",
-        True,
-    ),
-    (
-        "goals_mixed_up",
-        _mixed_up,
-        "One goal alone is right. When one goal was canceled, or two were at work, a goal went wrong ({}): they "
-        "disturb each other.",
-        "Keep what belongs to one goal in variables of the execute callback, and ask its own goal handle for "
-        "is_cancel_requested. A list, a flag or a goal handle in self belongs to all goals, and lives on after each.",
-        False,
-    ),
+    ("older_goal_ended", _canceled_unasked, *_WORDS["canceled_unasked"], True),
+    ("older_goal_ended", _ended_for_another, *_WORDS["older_goal_ended"], True),
+    ("goals_mixed_up", _mixed_up, *_WORDS["goals_mixed_up"], False),
 )
 ALONE: tuple[Row, ...] = (
-    (
-        "goal_rejected",
-        _rejected,
-        "Your server rejected a goal of {}, which is a good one.",
-        "Return GoalResponse.ACCEPT in your goal_callback for each goal that the task asks for, also while another one "
-        "is at work, and GoalResponse.REJECT for the others. Anything but GoalResponse.ACCEPT, such as True, rejects.",
-        True,
-    ),
-    (
-        "field_typo",
-        _result_never_filled,
-        "The goals succeed, but the result is empty: its field {0[1][0]} was never filled.",
-        "Set the field {0[1][0]} of your result before you return it. A misspelt keyword in {0[0]}(...) is ignored "
-        "silently.",
-        True,
-    ),
-    (
-        "done_at_once",
-        _done_at_once,
-        "A goal of {} was done at once: there was no time to cancel it.",
-        "Take some time for each step, for example time.sleep(0.5): an action is for work that takes long.",
-        False,
-    ),
-    (
-        "cancel_not_accepted",
-        _ended_before_its_work,
-        "Your server ended the goal before its work was done. So the cancel request was refused, because the goal had "
-        "already ended, but the server still sent feedback.",
-        "Call succeed(), canceled() or abort() of the goal handle exactly once, just before you return the result.",
-        False,
-    ),
-    (
-        "cancel_not_accepted",
-        _cancel_not_read,
-        *NO_FREE_THREAD,
-        False,
-    ),
+    ("goal_rejected", _rejected, *_WORDS["goal_rejected"], True),
+    ("field_typo", _result_never_filled, *_WORDS["field_typo"], True),
+    ("done_at_once", _done_at_once, *_WORDS["done_at_once"], False),
+    ("cancel_not_accepted", _ended_before_its_work, *_WORDS["cancel_not_accepted"], False),
+    ("cancel_not_accepted", _cancel_not_read, *NO_FREE_THREAD, False),
 )

@@ -23,7 +23,7 @@ from autograder.kit.lateness import SOON
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import ENDLESS_LOOP
-from autograder.kit.model import Advice, Finding, Mistake, mistake
+from autograder.kit.model import Advice, Finding, Mistake, card_words, mistake
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
@@ -59,63 +59,7 @@ _NODE_NOT_MET = ("NodeNameNonExistentError", "Failed to get action server names 
 """The words of rclpy's errors if a node is asked about that is not on the graph yet: also those for its actions."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 
-_TEXTS = {
-    "looked_too_early": (
-        "Your function asked the graph before it had discovered the robot: a new node knows no other node yet.",
-        "Wait, with a limit, until what you ask about is in node.get_node_names_and_namespaces(); then ask what it "
-        "has.",
-    ),
-    "not_written": (
-        "Your function ends, and it neither returns nor says anything: a step is not written yet.",
-        "If your function has the answer, write return before it. Otherwise find the TODO in your code and write that "
-        "step. In a notebook, the hints are below the cell; each opens separately.",
-    ),
-    "not_returned": (
-        "Your function found the name, but what it returns is {0.part.returned}: code that calls it cannot go on with "
-        "that.",
-        "End your function with `return` and the name itself, as the graph gives it.",
-    ),
-    "wrong_node": (
-        "Your answer names what the graph has, but not what you were asked for: {}.",
-        "Read once more which node you are to find, and what of it. Compare each name and each type as a whole.",
-    ),
-    "looked_once": (
-        "You looked only once. A new node knows almost nothing of the graph, and what you look for may start later "
-        "than your function.",
-        "Look again and again, with a short pause, until it is there or patience_sec seconds have passed.",
-    ),
-    "invented_answer": (
-        "Your answer{0[0]} is the same each time, but each time there is another robot.",
-        "Look the answer up on the graph. If your function has arguments, they say what to look up.",
-    ),
-    "waits_forever": (
-        "If what you look for does not exist, you look for it without end.",
-        "Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have passed.",
-    ),
-    "patience_not_kept": (
-        "If what you look for does not exist, your function {}.",
-        "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
-    ),
-    "gave_up": (
-        "Your function gave up waiting{0[0]}, although what it was to find was there: {0[1]}",
-        "Your condition never held for it. Print what the graph gives, and compare it with your condition: the types "
-        "are a list of whole names, such as ['std_msgs/msg/String'], and not one text.",
-    ),
-    "no_answer": (
-        "Your {0[0]}.",
-        "Return {0[1]} (a program prints it). If your code does that, it did not find all of it: go through everything "
-        "that the graph gives, such as all ends of a topic, and not only the first.",
-    ),
-    "silent_end": (
-        "If what you look for does not exist, your function has to raise TimeoutError. Yours {}.",
-        "After the loop with the limit, raise TimeoutError: its caller then knows that there is nothing.",
-    ),
-    "never_ended": (
-        "Your function was still busy when the time was over.",
-        "Looking at the graph needs no spin. Wait with a limit for what you look for, and return.",
-    ),
-}
-"""The two texts of the card for each mistake: its cause and the next step."""
+_WORDS = card_words(__file__)
 
 
 class Quest:
@@ -309,7 +253,7 @@ class Quest:
         )
 
     def _mistake(self, key: str, found: Callable[[Searches], object], *, certain: bool = False) -> Mistake:
-        says, usual = _TEXTS[key]
+        says, usual = _WORDS[key]
         next_step = self._next_steps.get(key, usual)
         return mistake(key, lambda evidence: found(self.seen(evidence)), says, next_step, certain=certain)
 
@@ -317,7 +261,7 @@ class Quest:
         seen = self.seen(evidence)
         if not self._has_keys:
             return giving_up.silent_end(_absent(seen), _found(seen), self._noun)
-        says, next_step = _TEXTS["silent_end"]
+        says, next_step = _WORDS["silent_end"]
         fault = Search(_absent(seen)).limit_fault
         return Advice(says.format(fault), next_step) if fault.startswith(("returned", "raised")) else None
 

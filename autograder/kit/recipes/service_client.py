@@ -17,7 +17,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.mistakes.role_mistakes import BY_ROLE, Stage
-from autograder.kit.model import Advice, Finding, Mistake, mistake
+from autograder.kit.model import Advice, Finding, Mistake, card_words, mistake
 from autograder.kit.recipes.service_runs import drawn_runs, extreme, negative, scenario
 from autograder.kit.reported_texts import mentions
 from autograder.kit.service_calls import (
@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
+
+_WORDS = card_words(__file__)
 
 
 class Calls:
@@ -169,13 +171,7 @@ class Calls:
 
     def _about_the_sum(self) -> Iterator[Mistake]:
         """Yield the mistakes of a client with right calls that does not report the sum."""
-        another = mistake(
-            "wrong_sum_reported",
-            self._another_sum,
-            "The service's last answer was {0[0]}, but your program said “{0[1]}”.",
-            "Report the field `sum` of the last answer unchanged, with all its digits. Do not report an earlier answer "
-            "or a sum that you computed yourself.",
-        )
+        another = mistake("wrong_sum_reported", self._another_sum, *_WORDS["wrong_sum_reported"])
         for one in (another, Mistake("sum_not_reported", self._sum_not_said)):
             yield common.only_if_ended(one)
             yield one
@@ -195,21 +191,10 @@ class Calls:
             WAIT.for_ever(),
             *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
             FIELDS_NEVER_FILLED,
-            mistake(
-                "too_many_calls",
-                self._too_many_calls,
-                "Your client called the service {} times, but the task asks for fewer calls.",
-                "Call the service once for each sum that you need, and wait for the answer.",
-                certain=True,
-            ),
+            mistake("too_many_calls", self._too_many_calls, *_WORDS["too_many_calls"], certain=True),
             OWN,
             mistake(
-                "zero_taken_for_failure",
-                self._dislikes_zero,
-                "The service answered 0, but your client treated 0 as a missing answer. 0 is a valid sum.",
-                "An `if` or an `or` that tests only the sum takes 0 for False, too. Test done() of the future that "
-                "call_async returned, or compare the answer with `is not None`.",
-                certain=True,
+                "zero_taken_for_failure", self._dislikes_zero, *_WORDS["zero_taken_for_failure"], certain=True
             ),
             mistake(
                 "wrong_arguments",
@@ -226,15 +211,7 @@ class Calls:
             ANSWER_NOT_AWAITED,
             ANSWER_NOT_USED,
             OWN_LATE,
-            mistake(
-                "no_call",
-                self._no_call,
-                "No call of your client reached the service.",
-                "Wait for the service before you call: a call that is sent earlier is lost, even if your client waits "
-                "after it. Send the request with call_async. Check whether a return or raise ends your function before "
-                "the call. A sum that you compute yourself is not the server's answer.",
-                uses=("wait_for_service", "call_async"),
-            ),
+            mistake("no_call", self._no_call, *_WORDS["no_call"], uses=("wait_for_service", "call_async")),
             *self._about_the_sum(),
             WAIT.silent_end(certain=True),
             WAIT.patience_not_kept(),
@@ -342,13 +319,7 @@ def _says_the_answer_but_returns_another(part: Part) -> bool:
     return returns_another(part) and mentions(part.said(after=part.of("response")[-1]), answers(part)[-1])
 
 
-NOT_RETURNED = mistake(
-    "not_returned",
-    _returns_another_each_time,
-    "Your function prints the sum, but returns {}, so the code that calls your function cannot use the sum.",
-    "End your function with `return` and the sum as a number: the field `sum` of the answer.",
-    certain=True,
-)
+NOT_RETURNED = mistake("not_returned", _returns_another_each_time, *_WORDS["not_returned"], certain=True)
 
 
 def _asks_for_nothing(evidence: Evidence) -> bool:
@@ -356,14 +327,7 @@ def _asks_for_nothing(evidence: Evidence) -> bool:
     return bool(made) and all(pair == [0, 0] for pair in made)
 
 
-FIELDS_NEVER_FILLED = mistake(
-    "field_typo",
-    _asks_for_nothing,
-    "Every call asks for 0 + 0: your code did not set the fields of the request.",
-    "Set the fields a and b of the request. Check their spelling: AddTwoInts.Request(...) ignores a misspelled "
-    "keyword silently.",
-    certain=True,
-)
+FIELDS_NEVER_FILLED = mistake("field_typo", _asks_for_nothing, *_WORDS["field_typo"], certain=True)
 
 
 _SUM_NOT_SAID = Advice(
