@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import os
+import re
 import secrets
 import sqlite3
 import tomllib
@@ -19,6 +21,8 @@ HERE = Path(__file__).parent
 FORM = "planted-[0-9a-f]{16}"
 """The form of each text, as a regular expression."""
 _GZIP = b"\x1f\x8b\x08"
+_EMBEDDED = re.compile(rb";base64,([A-Za-z0-9+/]+=*)")
+"""Matches a file that stands in a page, such as a picture."""
 _ANY_HEADER = 47
 """The value of zlib's ``wbits`` for the header of zlib or of gzip."""
 
@@ -86,7 +90,7 @@ def _write(path: Path, text: str, at_end: contextlib.ExitStack) -> None:
 def everything_in(path: Path) -> Iterator[bytes]:
     """Yield what is in a file; of a database each value, unpacked."""
     if path.suffix != ".db":
-        yield path.read_bytes()
+        yield from unpacked(path.read_bytes())
         return
     with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
         tables = [name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
@@ -98,8 +102,11 @@ def everything_in(path: Path) -> Iterator[bytes]:
 
 
 def unpacked(data: bytes) -> Iterator[bytes]:
-    """Yield data and, unpacked, all compressed data in it."""
+    """Yield data and, unpacked, all compressed and embedded data in it."""
     yield data
+    for embedded in _EMBEDDED.findall(data):
+        with contextlib.suppress(ValueError):
+            yield from unpacked(base64.b64decode(embedded))
     with contextlib.suppress(zlib.error):
         yield from unpacked(zlib.decompress(data))
     at = data.find(_GZIP)
