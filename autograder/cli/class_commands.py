@@ -250,10 +250,7 @@ def grade(folder: Path, as_json: bool, unsafe_no_sandbox: bool, **choices: Any) 
 @student_option
 @into_columns
 @over_option
-@click.option("--dry-run", is_flag=True, help="Change nothing, and show what would be done. Checks are run.")
-def week(
-    files: tuple[Path, ...], folder: Path, columns: dict[str, str], over: bool, dry_run: bool, **choices: Any
-) -> None:
+def week(files: tuple[Path, ...], folder: Path, columns: dict[str, str], over: bool, **choices: Any) -> None:
     """Collect DOWNLOAD, grade it, and fill the points into LIST, in the folder of a class.
 
     DOWNLOAD is a zip or folder with submissions, as an LMS gives it. LIST is a list of the same LMS: Moodle's grading
@@ -265,12 +262,10 @@ def week(
     from autograder.grading import week as weekly
 
     need_ros()
-    run = weekly.rehearsed if dry_run else weekly.week
     with grading_errors(), _finished_grades_are_stored():
-        report = run(folder.absolute(), files, weekly.WeekChoices(choices, columns=columns, over=over))
+        chosen = weekly.WeekChoices(choices, columns=columns, over=over)
+        report = weekly.week(folder.absolute(), files, chosen)
         weekly.show_week(report)
-        if dry_run:
-            print_line("Nothing was changed. Without --dry-run, the same is done.")
     sys.exit(report.exit_code)
 
 

@@ -7,15 +7,11 @@ a download. What the instructor has to decide comes last, each with the line to 
 from __future__ import annotations
 
 import contextlib
-import shutil
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from autograder import standard_output
 from autograder.grading.batch import grade
-from autograder.grading.class_store import NAME as STORE
-from autograder.grading.classes.class_directory import STATE_NAME, ClassDirectory
-from autograder.grading.classes.gradebook_reading import gradebook_file
 from autograder.grading.collecting.collect import collect, report_lines
 from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.collecting.list_times import NO_LIST
@@ -30,10 +26,9 @@ from autograder.grading.reporting.lms_list_filling import read_lms_list
 from autograder.grading.running.batch_progress import plain_line
 from autograder.grading.table.roster import NAME as ROSTER
 from autograder.grading.table.students_csv import read_students_csv
-from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.collect import CollectReport
@@ -141,56 +136,12 @@ def week(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoices()
     Raises:
         GradingError: One of the steps cannot be done. What the steps before it did is done.
     """
-    return _week(path, files, choices, grade)
-
-
-def _week(
-    path: Path,
-    files: Sequence[Path],
-    choices: WeekChoices,
-    grading: Callable[[Path], GradeReport],
-    *,
-    dry_run: bool = False,
-) -> WeekReport:
     sorted_out = _sorted_out(files)
     lines, questions = _take_students(path, sorted_out.students)
     collected = collect(path, sorted_out.downloads, **choices.collecting)
-    graded = grading(path)
-    exported = _exported(path, sorted_out.into, collected, choices, dry_run=dry_run)
+    graded = grade(path)
+    exported = _exported(path, sorted_out.into, collected, choices)
     return WeekReport(collected, graded, exported, tuple(lines), tuple(questions))
-
-
-def rehearsed(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoices()) -> WeekReport:
-    """Return what :func:`week` would do, which a copy of the class shows. The class keeps only the results of checks.
-
-    Raises:
-        GradingError: The gradebook is on a database server, so that it cannot be copied; or as of :func:`week`.
-    """
-    directory = ClassDirectory(path)
-    file = gradebook_file(directory.gradebook_url)
-    if file is None or not file.resolve().is_relative_to(directory.path.resolve()):
-        raise GradingError(
-            f"The gradebook is not in {directory.path}, so no copy of the class can be made: use --dry-run with "
-            "grade and with export."
-        )
-
-    def _grade_copy(copy: Path) -> GradeReport:
-        """Grade the copy. The class itself keeps the results of checks, so that the week need not wait again."""
-        store, ours = copy / STATE_NAME / STORE, directory.state / STORE
-        if ours.exists():
-            store.unlink()
-            store.symlink_to(ours)
-            grade(copy, dry_run=True)
-            store.unlink()
-            shutil.copy(ours, store)
-        return replace(grade(copy), path=directory.path, gradebook=None)
-
-    with directory.lock(), HeldFolder("autograder-week-") as held:
-        copy = held.path / directory.path.name
-        shutil.copytree(directory.path, copy, symlinks=True)
-        (copy / STATE_NAME / "lock").unlink(missing_ok=True)
-        report = _week(copy, files, choices, _grade_copy, dry_run=True)
-    return replace(report, collected=replace(report.collected, path=directory.path))
 
 
 def _take_students(path: Path, new: Path | None) -> tuple[list[str], list[str]]:
@@ -209,15 +160,13 @@ def _take_students(path: Path, new: Path | None) -> tuple[list[str], list[str]]:
 
 
 def _exported(
-    path: Path, into: Path | None, collected: CollectReport, choices: WeekChoices, *, dry_run: bool = False
+    path: Path, into: Path | None, collected: CollectReport, choices: WeekChoices
 ) -> Exported | None:
     """Export into the list, or for the only system from which the download came; None if neither is known."""
     systems = [name for name in collected.systems if name in LAYOUTS]
     if into is None and len(systems) != 1:
         return None
-    options = ExportChoices(
-        collected.assignments, into, columns=choices.columns, over=choices.over, dry_run=dry_run
-    )
+    options = ExportChoices(collected.assignments, into, columns=choices.columns, over=choices.over)
     done = export(path, "" if into else systems[0], options)
     return replace(done, ungraded=())
 

@@ -18,7 +18,7 @@ from autograder.cli import cli
 from autograder.grading import week as weekly
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends
-from autograder.grading.week import rehearsed, show_week, week
+from autograder.grading.week import show_week, week
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -56,18 +56,8 @@ def test_each_number_of_a_week_arrives(
 ) -> None:
     case = WEEKS[system]
     files = downloaded(folder, tmp_path, case)
-    before = {path: path.read_bytes() for path in folder.path.rglob("*") if path.is_file()}
-    plan = rehearsed(folder.path, files)
-    after = {path: path.read_bytes() for path in folder.path.rglob("*") if path.is_file()}
-    assert {path for path in before if before[path] != after[path]} <= {
-        folder.path / ".autograder" / "class.db"
-    }
-    assert not (folder.path / "export").exists()
     report = week(folder.path, files)
     assert report.exported is not None
-    assert plan.exported is not None
-    assert plan.exported.changes == report.exported.changes
-    assert report.graded.executed == 0, "the dry run has executed them"
     assert cells(folder, case) == case["cells"]
     show_week(report)
     lines = capsys.readouterr().out.splitlines()
