@@ -19,7 +19,7 @@ from autograder.grading.batch_work import (
     without_grade,
     would_change,
 )
-from autograder.grading.class_checks import changed_master_warnings, limits_of
+from autograder.grading.class_checks import changed_master_warnings
 from autograder.grading.classes import gradebook_reading, gradebook_writing
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
@@ -250,8 +250,7 @@ class Batch:
                     under_way[one.task.label] = one
                     yield one.task
 
-        longest = limits_of(self._directory).longest
-        with BatchProgress(self._console, self._missing, longest=longest) as progress:
+        with BatchProgress(self._console, self._missing) as progress:
             self._timings["first_started"] = time.monotonic() - self._began
             dones = self._execute(tasks(), on_start=lambda task: progress.started(task.label))
             with contextlib.closing(dones):

@@ -2,12 +2,11 @@
 
 The bar is for terminals, the plain lines are for log files and Jupyter. The remaining time is estimated from the
 finished notebooks. If a notebook still runs after the estimated time, the text names this notebook instead, with how
-long it has been running, and when it will be stopped at the latest.
+long it has been running.
 """
 
 from __future__ import annotations
 
-import threading
 import time
 from typing import TYPE_CHECKING, Self
 
@@ -31,8 +30,6 @@ def plain_line(console: Console, text: str, style: str = "") -> None:
 
 _LINES = 20
 """The approximate number of lines that a large class gets in a log file, not counting a line for each failure."""
-_SILENCE = 30.0
-"""Seconds between two lines in a log file about a notebook that runs longer than estimated."""
 
 
 class BatchProgress:
@@ -44,7 +41,6 @@ class BatchProgress:
         total: The number of notebooks to execute.
         doing: The word for the work in progress, such as "grading".
         did: The word for finished work, such as "graded".
-        longest: Seconds after which a notebook is stopped in any case; None if unknown.
         clock: Returns the current time in seconds.
     """
 
@@ -55,7 +51,6 @@ class BatchProgress:
         *,
         doing: str = "grading",
         did: str = "graded",
-        longest: float | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._console = console
@@ -64,10 +59,8 @@ class BatchProgress:
         self._done = 0
         self._failed = 0
         self._running: dict[str, float] = {}
-        self._longest = longest
         self._clock = clock
         self._began = self._last = clock()
-        self._closed = threading.Event()
         # Jupyter gets plain lines like a log file: it would show the control characters that move a terminal's cursor.
         self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
@@ -85,12 +78,9 @@ class BatchProgress:
     def __enter__(self) -> Self:
         if self._lively and self._total:
             self._bar.start()
-        elif self._total:
-            threading.Thread(target=self._break_silence, daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._closed.set()
         if self._bar.live.is_started:
             self._bar.stop()
 
@@ -120,15 +110,6 @@ class BatchProgress:
             rest = f" ({', '.join(self._now())})" if self._done < self._total else ""
             plain_line(self._console, f"{self._did} {self._done} of {self._total}: {label}{note}{rest}")
 
-    def tell(self) -> None:
-        """Print a line about the slowest notebook if it runs longer than estimated."""
-        if self._is_late():
-            plain_line(self._console, f"still {', '.join(self._now())}")
-
-    def _break_silence(self) -> None:
-        while not self._closed.wait(_SILENCE):
-            self.tell()
-
     def _now(self) -> list[str]:
         running = self._running.copy()  # another thread adds and removes notebooks
         waiting = max(0, self._total - self._done - len(running))
@@ -139,8 +120,6 @@ class BatchProgress:
             label, since = min(running.items(), key=lambda one: one[1])
             seconds = self._clock() - since
             words.append(f"{label} for {_duration(seconds)} now")
-            if self._longest is not None and seconds < self._longest:
-                words.append(f"it is stopped in {_duration(self._longest - seconds)} at the latest")
         elif self._done:
             rate = 1 / self._each()
             words.append(f"{rate:.1f}/s" if rate >= 1 else f"{60 * rate:.1f}/min")

@@ -6,8 +6,6 @@ if an LMS has the same number for both. If the lists contain no numbers, an equa
 
 from __future__ import annotations
 
-import contextlib
-import glob
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -159,26 +157,16 @@ def _free_id(student: Student, taken: Iterable[str]) -> str:
 def read_known(directory: ClassDirectory) -> KnownStudents:
     """Return the students whom a class knows.
 
-    A class that an earlier course made does not remember a list. Then the students of the gradebook count as listed,
-    with the numbers that Canvas gave to the files that were collected from them.
+    If the class does not remember a list, the students of the gradebook count as listed.
     """
     in_gradebook = _in_gradebook(directory.gradebook_url)
     try:
         data = (directory.state / _REMEMBERED).read_bytes()
         known = msgspec.json.decode(data, type=KnownStudents)
     except (OSError, msgspec.MsgspecError):
-        return KnownStudents({id_: _with_number(directory, one) for id_, one in in_gradebook.items()})
+        return KnownStudents(in_gradebook)
     others = {id_: one for id_, one in in_gradebook.items() if id_ not in known.listed}
     return KnownStudents(known.listed, {**others, **known.former})
-
-
-def _with_number(directory: ClassDirectory, student: Student) -> Student:
-    for path in sorted((directory.state / "collected").glob(f"*/{glob.escape(student.id)}.json")):
-        with contextlib.suppress(OSError, msgspec.MsgspecError, LookupError):
-            for line in msgspec.json.decode(path.read_bytes())["now"].values():
-                if line["lms"] == "canvas" and line["is_sure"]:
-                    return replace(student, lms={"canvas": line["number"]})
-    return student
 
 
 def _in_gradebook(url: str) -> dict[str, Student]:

@@ -278,8 +278,8 @@ def test_work_under_both_ids_is_put_together(term: TinyClass, tmp_path: Path) ->
     (term.path / ".autograder" / "students.json").unlink()
     term.hand_in("bb99", work(term, 8))
     listed(term, ADA, NEW_BEN, EVE)
-    assert "ben → bb99" in students(term)[1]
-    students(term, "--yes")
+    assert "add --rename ben=bb99 if they are one student" in students(term)[1]
+    students(term, "--rename", "ben=bb99", "--yes")
     assert ids(term) == everywhere("ada", "bb99", "eve")
     term.grade()
     assert exported(term)[0]["102"] == "15", "5 by a person, 10 by the judge: whichever file it is of"

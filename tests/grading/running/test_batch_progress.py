@@ -84,24 +84,6 @@ class Clock:
         return self.now
 
 
-def test_the_time_left_is_not_promised_again_when_it_has_passed() -> None:
-    clock, log = Clock(), io.StringIO()
-    with BatchProgress(Console(file=log, width=200), 2, longest=900, clock=clock) as progress:
-        progress.started("ada/lab_1_2")
-        progress.started("eve/lab_1_2")
-        clock.now = 5
-        progress.finished("ada/lab_1_2", failed=False)
-        assert "about 5 s left" in log.getvalue()
-        progress.tell()
-        assert len(log.getvalue().splitlines()) == 1  # nothing is late yet
-        clock.now = 135
-        progress.tell()
-    said = log.getvalue().splitlines()[-1]
-    assert "left" not in said
-    assert "eve/lab_1_2 for 2 min 15 s now" in said
-    assert "it is stopped in 12 min 45 s at the latest" in said
-
-
 def test_the_bar_counts_down_and_then_names_who_takes_so_long() -> None:
     clock, screen = Clock(), io.StringIO()
     console = Console(file=screen, force_terminal=True, width=160)
