@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.mistakes.crashes import raised, traceback_of
-from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
 from autograder.kit.outcomes import ABORTED, all_goals
 
 if TYPE_CHECKING:
@@ -31,12 +31,11 @@ def _result_missing(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not re2.search(said, traceback):
         return None
-    return Advice(
-        f"The execute callback did not return a {result} object. It returned nothing, a plain list, or the type "
-        "without parentheses.",
-        f"End the callback with `return result`, where `result` is a {result}() in which you have set "
-        f"{' and '.join(fields) or 'the fields'}. Do this wherever the callback returns, also after a cancel.",
-        traceback,
+    return filled_in(
+        _WORDS["result_missing"],
+        traceback=traceback,
+        result=result,
+        fields=" and ".join(fields) or "the fields",
     )
 
 

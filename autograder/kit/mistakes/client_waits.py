@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 
 from autograder.kit import giving_up
 from autograder.kit.giving_up import GIVE_UP_LIMIT, NOT_AVAILABLE, PATIENCE
-from autograder.kit.model import Finding, Mistake, mistake
+from autograder.kit.model import Finding, Mistake, card_words, mistake
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Advice
+
+_WORDS = card_words(__file__)
 
 
 @dataclass(frozen=True)
@@ -89,19 +91,19 @@ class Wait:
 
     # --- mistakes ------------------------------------------------------------------------------------------------
 
-    @property
-    def _with_a_limit(self) -> str:
-        return f"`if not your_{self.role}.wait_for_{self.noun}(timeout_sec=5.0):`"
+    def _words(self, name: str) -> tuple[str, str]:
+        """Return the two texts of a mistake for this kind of client."""
+        words = {"noun": self.noun, "asks": self.asks, "limit": GIVE_UP_LIMIT, "patience": PATIENCE}
+        with_a_limit = f"`if not your_{self.role}.wait_for_{self.noun}(timeout_sec=5.0):`"
+        text, next_step = (one.format(**words, with_a_limit=with_a_limit) for one in _WORDS[name])
+        return text, next_step
 
     def for_nobody(self) -> Mistake:
         """Return the mistake "waits forever": there is no server, and the client waits in silence."""
         return mistake(
             "waits_forever",
             lambda evidence: self.fault(evidence).startswith("still waiting"),
-            f"If there is no {self.noun}, your client is still waiting after {GIVE_UP_LIMIT:g} s.",
-            f"Wait for a few seconds at most: write {self._with_a_limit}. Inside this `if`, report that the "
-            f"{self.noun} is not available, and end. If you wait in a loop, count the turns and leave the loop after "
-            "a few.",
+            *self._words("for_nobody"),
             certain=True,
             uses=(f"wait_for_{self.noun}",),
         )
@@ -114,23 +116,13 @@ class Wait:
                 part.endpoints(self.role) and part.ending is None and not self.asked(part)
                 for part in self.runs(evidence)
             ),
-            f"The {self.noun} was available, but it received no {self.asks} from your client, and your client is "
-            f"still waiting. A {self.asks} that your client sends before the {self.noun} is available is lost.",
-            f"Wait with a time limit: write {self._with_a_limit}. Inside this `if`, report that the {self.noun} is "
-            f"not available, and end. wait_for_{self.noun} returns True once the {self.noun} is available, so a loop "
-            "that waits begins with `while not`.",
+            *self._words("for_ever"),
         )
 
     def the_wrong_way_round(self) -> Mistake:
         """Return the mistake of a missing ``not`` in the client's condition: it gives up only if its server exists."""
         return mistake(
-            "not_forgotten",
-            self._gives_up_where_served,
-            f"Your client says “{{}}” if the {self.noun} is available, and does not say it if the {self.noun} is "
-            "missing: the condition of your `if` lacks a `not`, or has one too many.",
-            f"wait_for_{self.noun} returns True if the {self.noun} is available. So put {self._with_a_limit} above "
-            f"the lines that report a missing {self.noun}.",
-            certain=True,
+            "not_forgotten", self._gives_up_where_served, *self._words("wrong_way_round"), certain=True
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
@@ -151,11 +143,7 @@ class Wait:
         return mistake(
             "gave_up_too_early",
             lambda evidence: giving_up.gave_up(self.runs(evidence), evidence.part(self.absent), self.asked),
-            f"Your client gave up, or went on, before it had discovered the {self.noun}, which was available or "
-            "started a moment late.",
-            f"Wait a few seconds for the {self.noun} before you send the first {self.asks}: "
-            f"wait_for_{self.noun}(timeout_sec=5.0). Do not forget the parentheses: without them the method is not "
-            "called, and nothing waits.",
+            *self._words("too_short"),
             uses=(f"wait_for_{self.noun}",),
         )
 
@@ -168,12 +156,7 @@ class Wait:
                 if giving_up.looked_for_nobody(evidence)
                 else giving_up.broken_patience(evidence.part(self.absent))
             ),
-            "If there is no server, your function {}.",
-            f"Use {PATIENCE} once, as the time limit: `if "
-            f"not your_client.wait_for_{self.noun}(timeout_sec={PATIENCE}):`. Inside this `if`, report that the "
-            f"{self.noun} is not available, and end the function with `raise TimeoutError(...)`. Without `raise` or "
-            f"`return` the function goes on and waits again. If you wait in a loop, leave the loop {PATIENCE} "
-            "seconds after it began.",
+            *self._words("patience_not_kept"),
         )
 
     def silent_end(self, *, certain: bool = False) -> Mistake:

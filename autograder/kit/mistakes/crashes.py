@@ -12,11 +12,13 @@ import re2
 from autograder import known_errors
 from autograder.kit.evidence import is_cut_off
 from autograder.kit.mistakes.traceback_lines import is_a_library, own_line, owner
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.known_errors import KnownError
+
+_WORDS = card_words(__file__)
 
 
 _NO_CRASH = re2.compile(
@@ -151,19 +153,11 @@ def _is_mute(part: Part) -> bool:
 
 def _cut_off(evidence: Evidence) -> Advice | None:
     if any(map(_is_mute, evidence)):
-        return Advice(
-            "Your notebook no longer answered the judge: one call in your code keeps Python busy and lets no other "
-            "thread run, as 9**9**9, sum(range(10**10)) and a search for a difficult pattern do.",
-            "Make that work smaller. Restart the kernel if ■ does not end the cell.",
-        )
+        return filled_in(_WORDS["no_longer_answers"])
     gone = next((event for part in evidence for event in part.of("subject", "gone")), None)
     if gone is None:
         return None
-    return Advice(
-        "The check was cut off, because your notebook's kernel ended or sent data that the judge cannot accept "
-        f"({gone.data.get('why') or 'nothing more came'}).",
-        "Remove code that ends the kernel, such as os._exit or exit(), and code that prints without end.",
-    )
+    return filled_in(_WORDS["cut_off"], why=gone.data.get("why") or "nothing more came")
 
 
 _NONE_FOR_AN_ANSWER = re2.compile(
@@ -184,14 +178,7 @@ def _answer_not_taken(evidence: Evidence) -> Advice | None:
     unread = [part for part in answered if _left_its_answer_unread(part)]
     if len(unread) < max(1, min(2, len(answered))) or not all(map(_had_none_instead, answered)):
         return None
-    return Advice(
-        "The service answered, but your client had None instead of the answer. A call(..., timeout_sec=...) returns "
-        "None if its time is up before a spin of the node has received the answer.",
-        "Write call_async(...) instead of call(...), and wait for the future that it returns: "
-        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) spins the node while it waits. Or "
-        "spin the node in a background thread while you use call(...).",
-        unread[0].traceback,
-    )
+    return filled_in(_WORDS["answer_not_taken"], traceback=unread[0].traceback)
 
 
 def _got_an_answer(part: Part) -> bool:

@@ -25,7 +25,7 @@ from autograder.kit.goal_reports import (
     unshown_feedback,
 )
 from autograder.kit.mistakes.crashes import meant, on_purpose
-from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
 from autograder.kit.reported_texts import mentions, not_filled_in
 
 if TYPE_CHECKING:
@@ -138,17 +138,8 @@ def _result_not_reported(evidence: Evidence) -> Advice | None:
             if left_out
             else "they are not in order, or a number that occurs twice is shown only once"
         )
-        return Advice(
-            f"The result has {len(numbers)} numbers. Your client showed most of them, but not the sequence exactly "
-            f"as it came: {seen}.",
-            "Log the whole sequence in the order in which the server sent it: list(...) of the "
-            "result().result.sequence of the future.",
-        )
-    return Advice(
-        "The result arrived, but your client did not show its sequence.",
-        "When the future of get_result_async() is done, log its result().result.sequence. In a notebook, also return "
-        "it.",
-    )
+        return filled_in(_WORDS["result_not_whole"], many=len(numbers), seen=seen)
+    return filled_in(_WORDS["result_not_shown"])
 
 
 RESULT_NOT_REPORTED = Mistake("result_not_reported", _result_not_reported)

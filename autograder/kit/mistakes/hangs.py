@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Mistake, card_words
+from autograder.kit.model import Advice, Mistake, card_words, filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
@@ -248,11 +248,7 @@ def _endless_loop(evidence: Evidence) -> Advice | None:
         return None
     callback = _stuck_callback([stack for text in texts for stack in _stacks_in(text)])
     what = f"Your callback {callback}()" if callback else "Your code"
-    return Advice(
-        f"{what} does not come to an end: {how[0]}.{_loop_in(texts)}",
-        "Something in the loop has to end it: a line that makes its condition false, a break or a return. Look at each "
-        "name in the condition, and at the line that changes it in each round.",
-    )
+    return filled_in(_WORDS["endless_loop"], what=what, how=how, loop=_loop_in(texts))
 
 
 ENDLESS_LOOP = Mistake("endless_loop", _endless_loop, certain=True)

@@ -11,7 +11,7 @@ import re2
 from autograder import known_errors
 from autograder.kit.bench import Pace
 from autograder.kit.mistakes.traceback_lines import own_line
-from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
 from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
 
 if TYPE_CHECKING:
@@ -155,11 +155,12 @@ def entry_point(evidence: Evidence, entry: EntryPoint) -> Advice | None:
         named = ", ".join(own.programs) if own else ""
         # If setup.py has no entry point yet, the advice shows only the format, because the exact line would be the
         # answer.
-        return Advice(
-            f"The package was built, but it has no program {entry.program}: setup.py names "
-            f"{named or 'no entry point of the right form'}.",
-            f"In setup.py, the list 'console_scripts' must contain {entry.line if named else FORM}. In setup.cfg "
-            f"next to it, programs must go to $base/lib/{entry.package}. {again}",
+        return filled_in(
+            _WORDS["no_entry_point"],
+            entry=entry,
+            named=named or "no entry point of the right form",
+            line=entry.line if named else FORM,
+            again=again,
         )
     # If the traceback ends in Python's code that loads the entry point, the program failed before it imported any file
     # of the student.
@@ -174,11 +175,13 @@ def entry_point(evidence: Evidence, entry: EntryPoint) -> Advice | None:
         if name
         else "a module, but not to a function in it"
     )
-    return Advice(
-        f"The entry point in setup.py points to {what}{', which does not exist' * bool(name)}.",
-        f"Write {entry.line} and a comma after it. This is the program, the package, a dot, the file without .py, a "
-        f"colon, and the function. {again}",
-        tracebacks,
+    return filled_in(
+        _WORDS["leads_nowhere"],
+        traceback=tracebacks,
+        what=what,
+        missing=", which does not exist" * bool(name),
+        entry=entry,
+        again=again,
     )
 
 
@@ -204,10 +207,7 @@ def no_executable(evidence: Evidence, entry: EntryPoint) -> Advice | None:
     """Return advice if `ros2 run` finds the package, but not the program in it."""
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
-    return Advice(
-        "`ros2 run` found the package, but no program with this name in it.",
-        f"Write the entry point in setup.py as {entry.line}. Then build and source the workspace again.",
-    )
+    return filled_in(_WORDS["no_executable"], entry=entry)
 
 
 def package_name(evidence: Evidence, package: str) -> Advice | None:
@@ -216,12 +216,7 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
     if report is None or not report.built or report.missing != package:
         return None
     names = ", ".join(known.name for known in report.packages)
-    return Advice(
-        f"The workspace was built, but it does not contain the package {package}; it contains {names}.",
-        f"The name of a package is its <name> in package.xml. Write {package} in all these places: <name> in "
-        "package.xml, name in setup.py, the paths in setup.cfg, the folder with your modules, and the file in the "
-        "folder resource.",
-    )
+    return filled_in(_WORDS["package_name"], package=package, names=names)
 
 
 def wrong_folder(evidence: Evidence, entry: EntryPoint) -> Advice | None:
@@ -236,11 +231,7 @@ def wrong_folder(evidence: Evidence, entry: EntryPoint) -> Advice | None:
         _module(named) == lost.removesuffix(".py").replace("/", ".") for named in own.programs
     ):
         return None
-    return Advice(
-        f"{file} is not in the folder with the package's modules, but at src/{package}/{lost}.",
-        f"Move {file} to src/{package}/{package}/{file}: the path contains {package} twice. Then check again; the "
-        "judge builds the package for you.",
-    )
+    return filled_in(_WORDS["wrong_folder"], file=file, package=package, lost=lost)
 
 
 def mistakes(entry: EntryPoint) -> tuple[Mistake, ...]:

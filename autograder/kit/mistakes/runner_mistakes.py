@@ -8,7 +8,7 @@ import re2
 
 from autograder.kit.mistakes.crashes import OTHER_CRASHES
 from autograder.kit.mistakes.package_mistakes import BUILD, EntryPoint, in_package
-from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
 from autograder.kit.runners import (
     Launches,
     LaunchesFromPackage,
@@ -111,10 +111,7 @@ def _syntax_error(evidence: Evidence) -> Advice | None:
     what = _complaint(evidence.main)
     if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
         return None
-    return Advice(
-        f"Python could not read the launch file: {what}.",
-        "In this line or just before it, a bracket, a quotation mark, a comma or the indentation is wrong.",
-    )
+    return filled_in(_WORDS["syntax_error"], what=what)
 
 
 LAUNCH = (

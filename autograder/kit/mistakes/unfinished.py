@@ -9,7 +9,7 @@ import re2
 from autograder.kit.giving_up import ended_at_once
 from autograder.kit.mistakes.common_mistakes import WORDS, worked
 from autograder.kit.mistakes.crashes import traceback_of
-from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
 from autograder.kit.runners import report_of
 
 if TYPE_CHECKING:
@@ -48,11 +48,8 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     at_once = "The program ended at once, without any output and without a node:"
     if report_of(evidence.main) is not None:  # The program is started by its entry point, which calls main().
         return Advice(f"{at_once} its main() makes no node.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
-    return Advice(
-        f"{at_once} main() makes no node, or nothing calls main().",
-        f"{_what_main_does(evidence)} Python calls main() only if the last lines of the file are "
-        "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`. (`ros2 run` "
-        f"calls main() even without these lines.) {_BEGIN_AT_TODO}",
+    return filled_in(
+        _WORDS["main_guard"], at_once=at_once, main=_what_main_does(evidence), _BEGIN_AT_TODO=_BEGIN_AT_TODO
     )
 
 

@@ -15,13 +15,15 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.in_words import counted, first_difference
-from autograder.kit.model import Advice, Finding
+from autograder.kit.model import Advice, Finding, card_words, filled_in
 from autograder.kit.rules import sent_times, simulated_times, successive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Event, Part
+
+_WORDS = card_words(__file__)
 
 
 SURE = 2
@@ -231,11 +233,7 @@ def field_typo(seen: PublisherSeen, _: PublisherSeen) -> Advice | None:
     """Return advice if all texts are empty."""
     if not seen.texts or any(seen.texts):
         return None
-    return Advice(
-        "Your messages arrive, but their string is empty, because your code never sets the field `data`.",
-        "Set the only field of a String, as in `message.data = your_text`. Check the spelling: String(...) ignores a "
-        "misspelled keyword silently.",
-    )
+    return filled_in(_WORDS["field_typo"])
 
 
 _UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
@@ -260,10 +258,8 @@ class Counting:
             return None
         asked, form = says_text(seen, expected).expected, expected.templates[0]
         if blank := _UNFILLED.search(odd):
-            return Advice(
-                f"Your talker says “{odd}”: Python did not replace {blank[0]} by a number.",
-                "Write an f directly before the opening quotation mark, and braces around the name of your counter, "
-                f"as in f'{form.replace('#', f'{{{self.variable}}}')}'.",
+            return filled_in(
+                _WORDS["not_filled_in"], odd=odd, blank=blank, form=form.replace("#", f"{{{self.variable}}}")
             )
         return Advice(
             f"Your talker says “{odd}”; the task asks for {asked}",
@@ -280,12 +276,13 @@ class Counting:
             if expected.templates[:1] == ["#"]  # The texts are numbers and nothing else.
             else "make a new string from the counter, with an f-string"
         )
-        return Advice(
-            f"Every message contains the number {seen.counters[0]}.",
-            f"In the method that the timer calls, {made}, and below that {self._changes(expected, 'the counter')}, "
-            f"as in {self._statement(expected)}. Do not return before you change the counter. Set the counter to "
-            f"{expected.counters[0]} only in __init__. Write self. before its name: without self., your code changes "
-            "another variable.",
+        return filled_in(
+            _WORDS["counter_stuck"],
+            seen=seen,
+            made=made,
+            changes=self._changes(expected, "the counter"),
+            statement=self._statement(expected),
+            expected=expected,
         )
 
     def start(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
@@ -296,19 +293,20 @@ class Counting:
             return None
         if unheard or right:
             what = f": “{seen.texts[0]}”" if seen.greetings else ", before any subscriber was connected"
-            return Advice(
-                f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node. "
-                f"Before it, your node published {counted(seen.greetings + unheard, 'message')} that did not "
-                f"count{what}.",
-                "Set the content of each message before you publish it. The first message that you publish must "
-                "contain the first number. Write a text such as “Talker started” to the log instead of publishing it.",
+            return filled_in(
+                _WORDS["counter_start_late"],
+                said=seen.texts[seen.greetings],
+                number=seen.greetings + seen.number_of_first,
+                before=counted(seen.greetings + unheard, "message"),
+                what=what,
             )
         first, begins = _first_number(seen, expected), expected.counters[0]
-        return Advice(
-            f"The first message contains the number {seen.counters[0] if first is None else first}, but the counter "
-            f"must begin at {begins}.",
-            f"Set your counter in __init__, as in {self.variable} = {begins}, and {self._changes(expected)} only "
-            "after you have published the message.",
+        return filled_in(
+            _WORDS["counter_start"],
+            first=seen.counters[0] if first is None else first,
+            begins=begins,
+            variable=self.variable,
+            changes=self._changes(expected),
         )
 
     def step(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
@@ -319,10 +317,12 @@ class Counting:
             return None
         came = f"After {numbers[place - 1]} comes {numbers[place]} ({_around(numbers, place)})."
         way, by = ("up", expected.step) if expected.step > 0 else ("down", -expected.step)
-        return Advice(
-            f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",
-            f"Change the counter once for each message that you publish: with {self._statement(expected)} at the end "
-            "of the method, without a loop, and with only one timer of only one node.",
+        return filled_in(
+            _WORDS["counter_step"],
+            came=came,
+            way=way,
+            by="one" if by == 1 else by,
+            statement=self._statement(expected),
         )
 
     def _statement(self, expected: PublisherSeen) -> str:

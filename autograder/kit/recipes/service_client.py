@@ -17,7 +17,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.mistakes.role_mistakes import BY_ROLE, Stage
-from autograder.kit.model import Advice, Finding, Mistake, card_words, mistake
+from autograder.kit.model import Advice, Finding, Mistake, card_words, filled_in, mistake
 from autograder.kit.recipes.service_runs import drawn_runs, extreme, negative, scenario
 from autograder.kit.reported_texts import mentions
 from autograder.kit.service_calls import (
@@ -330,7 +330,4 @@ def _asks_for_nothing(evidence: Evidence) -> bool:
 FIELDS_NEVER_FILLED = mistake("field_typo", _asks_for_nothing, *_WORDS["field_typo"], certain=True)
 
 
-_SUM_NOT_SAID = Advice(
-    "The calls are right, but your program never prints the sum.",
-    "Log or print the field `sum` of the service's last answer. In a notebook, also return the sum.",
-)
+_SUM_NOT_SAID = filled_in(_WORDS["sum_not_said"])

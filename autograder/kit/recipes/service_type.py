@@ -9,7 +9,7 @@ import re2
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Advice, Finding, Mistake
+from autograder.kit.model import Advice, Finding, Mistake, card_words, filled_in
 from autograder.kit.runners import (
     AMENT_PACKAGE,
     BUILDING,
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
+
+_WORDS = card_words(__file__)
 
 GROUP = "rosidl_interface_packages"
 """The group in package.xml that marks a package as one that defines interfaces."""
@@ -154,12 +156,7 @@ class ServiceType(SeenAsItIs):
             number = len(_fields(text))
             if number == 2:
                 continue
-            return Advice(
-                f"{file} has {number - 1} lines of three dashes, but a service has exactly one, between request and "
-                "response.",
-                "Write exactly one line that contains only ---. The fields of the request are above this line, those "
-                "of the response below it.",
-            )
+            return filled_in(_WORDS["three_dashes"], file=file, lines=number - 1)
         return None
 
     def _interface_fields(self, evidence: Evidence) -> Advice | None:
@@ -168,12 +165,7 @@ class ServiceType(SeenAsItIs):
         texts = self._texts(evidence)
         if finding.passed or not texts or not self._is_read(evidence) or len(_fields(texts[0][1])) != 2:
             return None
-        return Advice(
-            f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
-            "A field has a type and a name, as in `int64 a`. Types, names and order must be the same, because other "
-            "programs use them. A field's name has small letters, digits and single underscores, begins with a letter "
-            "and does not end with an underscore: ROS refuses to build any other name.",
-        )
+        return filled_in(_WORDS["interface_fields"], texts=texts, finding=finding)
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
         """Return advice if the file is in an ament_python package, which does not generate interfaces."""
@@ -184,10 +176,8 @@ class ServiceType(SeenAsItIs):
             or any(p.build_type != "ament_python" for p, _ in holders)
         ):
             return None
-        return Advice(
-            f"{holders[0][0].name} is an ament_python package. Such a package generates nothing from {self._file}, "
-            "whatever setup.py says.",
-            f"Make a separate package for {self._file}: `ros2 pkg create --build-type ament_cmake {self._package}`.",
+        return filled_in(
+            _WORDS["interface_in_python_package"], holders=holders, file=self._file, package=self._package
         )
 
     def _member_of_group(self, evidence: Evidence) -> Advice | None:
@@ -196,10 +186,7 @@ class ServiceType(SeenAsItIs):
         named = any(GROUP in package.dependencies for package, _ in holders)
         if self.builds(evidence).passed or not holders or named:
             return None
-        return Advice(
-            f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
-            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export> and not inside a comment.",
-        )
+        return filled_in(_WORDS["member_of_group"], holders=holders, GROUP=GROUP)
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
         """Return advice if the package builds, but the build generates nothing from the file."""

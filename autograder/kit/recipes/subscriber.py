@@ -9,7 +9,7 @@ from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Advice, Finding, Mistake
+from autograder.kit.model import Advice, Finding, Mistake, card_words, filled_in
 from autograder.kit.reported_texts import (
     AT_PACE,
     SINGLY,
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
     from autograder.kit.counterparts import Speaker
     from autograder.kit.evidence import Event, Evidence, Part
+
+_WORDS = card_words(__file__)
 
 AT_ONCE = 2
 """The maximum number of subscriptions at once of a program that replaces one: the new one may be made first."""
@@ -192,11 +194,8 @@ class Subscriber:
             return None  # Each text was reported at least once, so the listener is not too slow.
         if all(_text(event) in evidence.main.inputs["pairs"] for event in missing):
             return None  # Only texts that the next one followed at once are missing: it keeps only the newest text.
-        return Advice(
-            f"At the pace of {self._paced_by}, one string every {self._pace:g} s, your listener misses some strings, "
-            f"such as “{_text(missing[0])}”. If strings come one by one, it misses none.",
-            "While a callback runs, new messages wait in a queue. If the queue is full, messages are lost. So only "
-            "log in the callback and return, without time.sleep, and give the subscription the queue depth 10.",
+        return filled_in(
+            _WORDS["callback_too_slow"], paced_by=self._paced_by, pace=self._pace, missing=_text(missing[0])
         )
 
 
@@ -321,20 +320,11 @@ def _said_again(evidence: Evidence) -> Advice | None:
     sent = _sent_texts(evidence)
     again = repeated(evidence.main, sent)
     if not again and retold(evidence.main, sent):
-        return Advice(
-            "With each string that arrives, your program repeats all earlier strings.",
-            "Log only the field data of the message that the callback was just given, and not a list or text with "
-            "all earlier strings.",
-        )
+        return filled_in(_WORDS["retold"])
     if not again:
         return None
     text, times = _most_often(again)
-    return Advice(
-        f"Your program says “{text}” {times} times for one message.",
-        "Call create_subscription only once, in __init__. Log in its callback, once for each message; do not log in "
-        "a timer, because a timer cannot know whether a message came. In a notebook, a node from an earlier run of "
-        "the cell may still exist.",
-    )
+    return filled_in(_WORDS["everything_twice"], text=text, times=times)
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
@@ -346,10 +336,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         lines = then[: len(then) - len(part.said(after=later[0]))] if later else then
         made_up = [line for line in changed(part, _sent_texts(evidence), _text(event)) if line in lines]
         if made_up:
-            return Advice(
-                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”, which is not the same string.",
-                "Log the field data of the message unchanged, without strip, replace, slices or other changes.",
-            )
+            return filled_in(_WORDS["wrong_text"], sent=_text(event), made_up=made_up)
     return None
 
 
@@ -360,12 +347,7 @@ def _subscribes_again(evidence: Evidence) -> Advice | None:
     adds = any(event.data["now"] > AT_ONCE for event in evidence.main.of("matched", topic))
     if adds or not successive(evidence.main, topic):
         return None
-    return Advice(
-        "After a string has arrived, your program destroys its subscription and makes a new one. Strings that are "
-        "sent in between are lost, so chance decides how many strings it logs.",
-        "Call create_subscription only once, before you spin, and log in its callback. Do not use wait_for_message: "
-        "it makes a new subscription at each call.",
-    )
+    return filled_in(_WORDS["subscribes_again"])
 
 
 def _not_logged(evidence: Evidence) -> Advice | None:
@@ -378,29 +360,12 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     words = list(filter(str.strip, part.said(after=silent)))
     bytes_said = next((line for line in words if _text(silent) in line), None)
     if bytes_said is not None:
-        return Advice(
-            f"Your node said “{bytes_said}”: these are the bytes of the serialized message, not its string.",
-            "Delete raw=True from create_subscription. The callback then gets a message with a string in its field "
-            "data.",
-        )
+        return filled_in(_WORDS["bytes_said"], bytes_said=bytes_said)
     if any(is_said(_text(event), part) for event in sent):
-        return Advice(
-            f"Your node reported some of the strings, but not “{_text(silent)}” when that string was sent.",
-            "Log in the callback itself, once for each message that it is given, without `once`, throttling or a "
-            "condition. A timer that logs what the callback stored misses a string if the next one comes soon.",
-        )
+        return filled_in(_WORDS["some_not_logged"], silent=_text(silent))
     if not words:
-        return Advice(
-            f"Your node is subscribed to {topic}, but prints nothing when a string arrives.",
-            "In the callback, log the field data of the message that it is given, as in self.get_logger().info(f'I "
-            'heard: "{message.data}"\'). Lines of debug(...) are not shown: use info. If you use print, do not use '
-            "end=..., because the judge reads only complete lines.",
-        )
-    return Advice(
-        f"When “{_text(silent)}” was sent, your node said “{words[0]}”, which does not contain the string that "
-        "arrived.",
-        "Put the field data of the message into the line that you log: in braces, with an f before the quotation mark.",
-    )
+        return filled_in(_WORDS["not_logged"], topic=topic)
+    return filled_in(_WORDS["other_words"], silent=_text(silent), words=words)
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
@@ -408,10 +373,7 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
-    return Advice(
-        f"Your node said “{made_up[0]}”, but no node sent that string.",
-        "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
-    )
+    return filled_in(_WORDS["invented_text"], made_up=made_up)
 
 
 Speaks = Subscriber
