@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.kit.model import card_words, filled_in
 from autograder.kit.oracle.naming.deltas import rows, steps_apart
 from autograder.kit.oracle.naming.step_words import input_of
 from autograder.kit.oracle.outputs import Kind
@@ -16,22 +17,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from autograder.kit.evidence import Event, Part
+    from autograder.kit.model import Advice
     from autograder.kit.oracle.outputs import Output
 
-Hint = tuple[str, str]
-"""What is wrong, and the next step for the student."""
+_WORDS = card_words(__file__)
 LONGEST_PIECE, ALIKE = 30, 4
 """The most letters that are missing in a text, or too many, for a card to say so; and how many have to follow alike."""
 _WHOLE_MESSAGE = re2.compile(r"\.(?:msg|srv|action)\.\w+\(")
 _NUMBER = re2.compile(r"\d")
-COPIED = (
-    "Your success is what the request asks for; it has to say whether the request was carried out.",
-    "Set success as the task says, whatever the data of the request is.",
-)
-LETTER_BY_LETTER = "Compare the two texts letter by letter: each letter, sign and space counts."
 
 
-def hint(output: Output, run: Part, due: Part) -> Hint | None:
+def hint(output: Output, run: Part, due: Part) -> Advice | None:
     """Return what the first step shows in which an output is not the solution's; None if its values show nothing.
 
     Args:
@@ -52,18 +48,17 @@ def hint(output: Output, run: Part, due: Part) -> Hint | None:
     texts = [list(_texts(list(values.values()))) for values in (mine, theirs)]
     for path, one, other in _pairs(output, came, asked):
         if path == "success" and other is True and _is_copied(output, run, mine):
-            return COPIED
+            return filled_in(_WORDS["copied"])
         are_texts = isinstance(one, str) and isinstance(other, str)
         if are_texts and (told := _of_a_text(one, other, inputs) or _a_piece(one, other, *texts)):
             return told
     falls = (
-        f"The numbers of your {path} on {output.name} go up; the task asks for numbers that go down."
+        filled_in(_WORDS["rises"], path=path, name=output.name)
         for step in steps
         for path, one, other in _pairs(output, mine[step], theirs[step])
         if _rises(one) and _rises(other, -1)
     )
-    counts = "Read which of the two the task asks for: what is done, or what is left."
-    return next(((told, counts) for told in falls), None)
+    return next(falls, None)
 
 
 def _inputs(output: Output, run: Part) -> Iterator[tuple[Event, int]]:
@@ -90,17 +85,13 @@ def _pairs(output: Output, came: Sequence[Any], asked: Sequence[Any]) -> Iterato
             return
 
 
-def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Hint | None:
+def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Advice | None:
     if len(asked) != 1 or len(came) < 2 or any(one != asked[0] for one in came):
         return None
-    return (
-        f"Your node says the same {len(came)} times, and it is due once.",
-        "Look at each line that says it, and at what comes before it: only one of them may run, once. Perhaps a return "
-        "is missing, or the line is in a loop.",
-    )
+    return filled_in(_WORDS["too_often"], times=len(came))
 
 
-def _late(output: Output, run: Part, came: Sequence[Any]) -> Hint | None:
+def _late(output: Output, run: Part, came: Sequence[Any]) -> Advice | None:
     """Return that an answer was used after the subject had said something else instead, as that it gives up."""
     events = [event for event in run.events if event.kind in ("sent", "request", "response", "message")]
     told = [event for event in events if event.kind != "message" or event.name == output.name]
@@ -108,40 +99,27 @@ def _late(output: Output, run: Part, came: Sequence[Any]) -> Hint | None:
         kinds = tuple(event.kind for event in (asks, gives_up, answer, uses))
         is_late = kinds == ("request", "message", "response", "message") and asks.name == answer.name
         if is_late and [value(uses)] == came[0]:
-            return (
-                f"Your node says “{value(gives_up)}”, and then uses the answer of {answer.name} all the same.",
-                "Close a question when you give it up. An answer counts only if its question is still the open one.",
-            )
+            return filled_in(_WORDS["late"], said=value(gives_up), service=answer.name)
     return None
 
 
-def _of_a_text(came: str, asked: str, inputs: Sequence[Event]) -> Hint | None:
+def _of_a_text(came: str, asked: str, inputs: Sequence[Event]) -> Advice | None:
     if came.startswith(f"{asked}, long after"):
-        return (
-            "Your server agrees to cancel the goal, and works on for long before it ends it.",
-            "Look at is_cancel_requested of the goal handle before each piece of the work, and end the goal at once.",
-        )
+        return filled_in(_WORDS["works_on"])
     if _WHOLE_MESSAGE.search(came) and not _WHOLE_MESSAGE.search(asked):
-        return (
-            "Your text has a whole message in it, with its type, and only one field of it is due.",
-            "Write the field into the text, as in message.data, and not the message.",
-        )
+        return filled_in(_WORDS["whole_message"])
     return _of_another_input(came, asked, inputs)
 
 
-def _of_another_input(came: str, asked: str, inputs: Sequence[Event]) -> Hint | None:
+def _of_another_input(came: str, asked: str, inputs: Sequence[Event]) -> Advice | None:
     told = [str(value(event)) for event in inputs]
     for older in told[:-1]:
         if older in asked and asked.replace(older, told[-1], 1) == came:
-            return (
-                f"Your node says {told[-1]}, which came last, where {older} is due: what came before is lost.",
-                "An attribute of self has only the newest value. Keep what belongs to one input in a variable of its "
-                "callback, and hand it on, as with partial(...).",
-            )
+            return filled_in(_WORDS["another_input"], newest=told[-1], older=older)
     return None
 
 
-def _a_piece(came: str, asked: str, all_came: Sequence[str], all_asked: Sequence[str]) -> Hint | None:
+def _a_piece(came: str, asked: str, all_came: Sequence[str], all_asked: Sequence[str]) -> Advice | None:
     """Return that words or signs are missing in a text, or too much, each time; behind them the texts go on alike."""
     letters = zip(came, asked, strict=False)
     begin = next((n for n, (one, other) in enumerate(letters) if one != other), min(len(came), len(asked)))
@@ -164,7 +142,7 @@ def _a_piece(came: str, asked: str, all_came: Sequence[str], all_asked: Sequence
                     else longer[max(0, begin - ALIKE) : place + behind]
                 )
                 is_usual = any(usual in one for one in never)
-                return None if is_usual else (f"In your text, “{piece}” {words}.", LETTER_BY_LETTER)
+                return None if is_usual else filled_in(_WORDS["piece"], piece=piece, words=words)
     return None
 
 

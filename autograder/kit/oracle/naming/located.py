@@ -46,12 +46,11 @@ def located(
         what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
-        shows, next_step = hint(output, run, due) or ("", GO_THROUGH)
-        if whole and whole.is_twice:
-            shows = ""
+        values = hint(output, run, due) or Advice("", GO_THROUGH)
+        shows = "" if whole and whole.is_twice else values.text
         # The values show more than a sentence of the task does.
         words = (whole.text if whole else "", shows, what, says * (not shows))
-        return Advice(" ".join(filter(None, words)), next_step, uses=uses)
+        return Advice(" ".join(filter(None, words)), values.next_step, uses=uses)
     return None
 
 
