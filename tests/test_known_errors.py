@@ -15,6 +15,7 @@ from autograder.authoring.answer_bank import Answer, answers
 from autograder.judge import evidence_files
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.package_mistakes import build_report
+from autograder.kit.mistakes.runner_mistakes import complaint
 from autograder.notebook.nodes import ros_session
 from tests.cases import cases
 from tests.measure import evidence as kept_evidence
@@ -61,7 +62,7 @@ def sources(row: KnownError) -> list[str]:
 
 @functools.cache
 def heard(answer: Answer) -> dict[str, str]:
-    """What was heard of an answer, by where: its traceback, its output and the line of its build."""
+    """What was heard of an answer, by where: its traceback, its output, its build's line and its launch's error."""
     line = kept_evidence.kept(answer.exercise).get(answer.name)
     record = kept_evidence.record_of(answer, line)
     evidence = evidence_files.evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
@@ -70,6 +71,7 @@ def heard(answer: Answer) -> dict[str, str]:
         "program": traceback_of(evidence),
         "terminal": "\n".join(text for part in evidence for text in part.said()),
         "build": report.line if report else "",
+        "launch": complaint(evidence.main),
     }
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder import known_errors
 from autograder.kit.mistakes.crashes import OTHER_CRASHES
 from autograder.kit.mistakes.package_mistakes import BUILD, EntryPoint, in_package
 from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
@@ -56,44 +57,17 @@ _OF_A_PROGRAM = ("main_guard", "nothing_on_the_graph", "ended_too_early")
 """The keys of mistakes whose advice is about main(), which a launch file does not have."""
 
 
-_TODO = (
-    (
-        r"remappings",
-        'remappings is a list of pairs. Each pair is two strings in parentheses, as in remappings=[("image", '
-        '"/left/image")].',
-    ),
-    (
-        r"must return|NoneType",
-        "Write `return` before the LaunchDescription, because generate_launch_description must return it.",
-    ),
-    (
-        r"LaunchDescription|is not iterable",
-        "Pass one list to LaunchDescription: square brackets around all the Nodes, and a comma between them.",
-    ),
-    (
-        r"(?i)\b(?:package|executable)\b.* not found|libexec",
-        "Compare the names of the package and of the programs with those that `ros2 pkg executables` lists.",
-    ),
-    (
-        r"Node\.__init__\(\) (?:takes|missing)",
-        'Write the name of each argument, as in Node(package="...", executable="...", output="screen"). '
-        "Some names have changed since older tutorials, such as node_executable.",
-    ),
-    (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
-    (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
-)
-"""The advice for messages of ``ros2 launch``, most specific pattern first."""
 _COMPARE = "Compare the file with the example. Begin with the line that the message names."
 
 
 def _launch_error(evidence: Evidence) -> Advice | None:
     """Return advice if the launch failed and reported the reason."""
-    what = _complaint(evidence.main)
-    todo = next((todo for pattern, todo in _TODO if re2.search(pattern, what)), _COMPARE)
-    return Advice(f"The launch failed: {what}", todo) if what else None
+    what = complaint(evidence.main)
+    known = known_errors.recognized(what, "launch")
+    return Advice(f"The launch failed: {what}", known.do if known else _COMPARE) if what else None
 
 
-def _complaint(part: Part) -> str:
+def complaint(part: Part) -> str:
     """Return the launch's error message without the text around it; empty if there is none."""
     lines = [str(event.data["text"]) for event in part.of("output")]
     for number, line in enumerate(lines):
@@ -108,7 +82,7 @@ def _complaint(part: Part) -> str:
 
 def _syntax_error(evidence: Evidence) -> Advice | None:
     """Return advice if Python cannot parse the launch file."""
-    what = _complaint(evidence.main)
+    what = complaint(evidence.main)
     if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
         return None
     return filled_in(_WORDS["syntax_error"], what=what)

@@ -49,7 +49,7 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     if report_of(evidence.main) is not None:  # The program is started by its entry point, which calls main().
         return Advice(f"{at_once} its main() makes no node.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
     return filled_in(
-        _WORDS["main_guard"], at_once=at_once, main=_what_main_does(evidence), _BEGIN_AT_TODO=_BEGIN_AT_TODO
+        _WORDS["main_guard"], at_once=at_once, main=_what_main_does(evidence), todo=_BEGIN_AT_TODO
     )
 
 

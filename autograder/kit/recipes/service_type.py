@@ -186,7 +186,7 @@ class ServiceType(SeenAsItIs):
         named = any(GROUP in package.dependencies for package, _ in holders)
         if self.builds(evidence).passed or not holders or named:
             return None
-        return filled_in(_WORDS["member_of_group"], holders=holders, GROUP=GROUP)
+        return filled_in(_WORDS["member_of_group"], holders=holders, group=GROUP)
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
         """Return advice if the package builds, but the build generates nothing from the file."""
