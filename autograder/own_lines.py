@@ -34,7 +34,8 @@ LONGEST_LINE = 120
 ENDLESS, UNLEFT = ", whose condition stays true", ", which no line leaves"
 """The words behind the quoted head of a loop that cannot end. A `while True` may be all that a program does."""
 _LEAVES = ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom | ast.Await
-_ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE
+_PLAIN = ast.BoolOp | ast.UnaryOp | ast.BinOp | ast.Compare | ast.Constant | ast.Name | ast.Attribute
+"""What a condition may consist of if its names have plain values. Anything else, such as a call, may change alone."""
 
 
 def own_lines(sources: Mapping[str, str]) -> OwnLines:
@@ -97,7 +98,7 @@ def loop_around(text: str, line: int, fixed: frozenset[str] = frozenset()) -> st
     Args:
         text: The source.
         line: The number of a line in it, counted from 1.
-        fixed: The attributes that no other function of their object's class sets, such as ``self.left``.
+        fixed: The variables and attributes that have plain values, such as a number, and that only this function sets.
     """
     tree = _parsed(text)
     statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
@@ -112,20 +113,19 @@ def loop_around(text: str, line: int, fixed: frozenset[str] = frozenset()) -> st
 
 
 def _never_ends(loop: ast.While, function: ast.AST, fixed: frozenset[str]) -> str:
-    """Return words if no line of a loop leaves it, or changes a variable that its condition compares; else nothing."""
+    """Return words if no line of a loop leaves it, or changes a name in its condition; else nothing."""
     if any(isinstance(node, _LEAVES) for node in ast.walk(loop)):
         return ""
     if isinstance(loop.test, ast.Constant):
         return UNLEFT if loop.test.value else ""
-    conditions = loop.test.values if isinstance(loop.test, ast.BoolOp) else [loop.test]
-    compares = [one for one in conditions if isinstance(one, ast.Compare) and isinstance(one.ops[0], _ORDER)]
-    sides = [side for one in compares for side in (one.left, *one.comparators)]
-    names = {ast.unparse(side) for side in sides if not isinstance(side, ast.Constant)}
+    parts = [one for one in ast.walk(loop.test) if isinstance(one, ast.expr)]
+    owners = [one.value for one in parts if isinstance(one, ast.Attribute)]
+    names = {
+        ast.unparse(one) for one in parts if isinstance(one, ast.Name | ast.Attribute) and one not in owners
+    }
     shares = any(isinstance(node, ast.Global | ast.Nonlocal) for node in ast.walk(function))
-    own = {one for one in _set_in(function) if one.isidentifier()}
-    own |= {one.arg for one in ast.walk(function) if isinstance(one, ast.arg)} | fixed
-    is_endless = compares == conditions and not shares and bool(names) and names <= own - _set_in(loop)
-    return ENDLESS if is_endless else ""
+    is_plain = all(isinstance(one, _PLAIN) for one in parts) and not shares
+    return ENDLESS if is_plain and names and names <= fixed - _set_in(loop) else ""
 
 
 def _set_in(node: ast.AST) -> set[str]:

@@ -116,10 +116,13 @@ def test_the_innermost_loop_around_a_line_is_quoted(line: int, loop: str) -> Non
         ("pass", "break", False),
         ("pass", "raise StopIteration", False),
         ("pass", "yield left", False),
-        ("left > 0.0", "left", False),
+        ("left > 0.0", "left", True),
+        ("left > 0.0", "not -left % 2 or left is None", True),
         ("left > 0.0", "self.left > 0.0", False),
         ("left > 0.0", "left == goal", False),
-        ("left > 0.0", "left > self.end()", False),
+        ("left > 0.0", "left > n and left != goal", False),
+        ("left > 0.0", "left > left()", False),
+        ("left > 0.0", "left[0]", False),
         ("left > 0.0", "total > 0.0", False),
         ("        n = 1", "        nonlocal left", False),
     ],
@@ -127,13 +130,17 @@ def test_the_innermost_loop_around_a_line_is_quoted(line: int, loop: str) -> Non
 def test_a_loop_is_endless_only_if_no_line_ends_it(old: str, new: str, endless: bool) -> None:
     text = "def dock():\n    def drive(left, goal):\n        n = 1\n        while left > 0.0:\n            pass\n"
     assert old in text
-    assert loop_around(text.replace(old, new), 5).endswith(ENDLESS) is endless
+    quoted = loop_around(text.replace(old, new), 5, frozenset({"left", "n"}))
+    assert quoted.endswith(ENDLESS) is endless
 
 
 @pytest.mark.parametrize(
     ("text", "ends"),
     [
         ("while self.left > 0.0:\n    self.forward()", ENDLESS),
+        ("while self.left:\n    self.forward()", ENDLESS),
+        ("while self:\n    self.forward()", ""),
+        ("while self.left.there:\n    self.forward()", ""),
         ("while self.left > 0.0:\n    self.left -= 0.25", ""),
         ("while self.other > 0.0:\n    self.forward()", ""),
         ("while True:\n    self.forward()", UNLEFT),

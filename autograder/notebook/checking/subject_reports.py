@@ -21,6 +21,7 @@ import sys
 import threading
 import traceback
 from contextlib import suppress
+from inspect import getattr_static
 from pathlib import Path
 from types import CodeType, FrameType, FunctionType
 from typing import TYPE_CHECKING, Any, Self
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
 
 _COURSE = f"{Path(__file__).parents[2]}/"
 """The folder of this package. The stacks leave its calls out, because no student wrote them."""
+_PLAIN = (int, float, str, bytes, type(None))
+"""The types of values that nothing changes, except who sets their name."""
 MOST_CALLS = 50
 """The maximum number of innermost calls of a thread that its stack shows, and of outermost ones behind them."""
 
@@ -148,17 +151,26 @@ def _loop_in(call: tuple[FrameType, int]) -> str:
 
 
 def _fixed(frame: FrameType) -> frozenset[str]:
-    """Return the attributes of a method's object that no other function of its class names, such as ``self.left``."""
+    """Return the plain variables of a call, and the plain attributes of its object that only this method names.
+
+    The constructor may name them, too, but no function in it.
+    """
     code = frame.f_code
+    plain = {name for name, value in frame.f_locals.items() if isinstance(value, _PLAIN)}
     owner = next(iter(code.co_varnames[: code.co_argcount]), "")
-    members = [one for kind in type(frame.f_locals.get(owner)).__mro__ for one in vars(kind).items()]
-    methods = {
-        member.__code__ for name, member in members if isinstance(member, FunctionType) and name != "__init__"
-    }
-    if code not in methods:
-        return frozenset()
-    named = {name for name, _ in members}.union(*map(_named_in, [*methods - {code}, *code.co_consts]))
-    return frozenset(f"{owner}.{name}" for name in {*code.co_names} - named)
+    this = frame.f_locals.get(owner)
+    members = [one for kind in type(this).__mro__ for one in vars(kind).items()]
+    methods = [(name, one.__code__) for name, one in members if isinstance(one, FunctionType)]
+    named = {name for name, _ in members}
+    for name, method in methods:
+        is_own = name == "__init__" or method is code
+        named = named.union(*map(_named_in, method.co_consts if is_own else [method]))
+    if any(method is code for _, method in methods):
+        unnamed = {*code.co_names} - named
+        plain |= {
+            f"{owner}.{name}" for name in unnamed if isinstance(getattr_static(this, name, this), _PLAIN)
+        }
+    return frozenset(plain - {*code.co_freevars})
 
 
 def _named_in(code: object) -> set[str]:

@@ -281,6 +281,9 @@ WAITS = """class Base:
     end = 3.0
     def __init__(self, over):
         self.left, self.ahead, self.rest, self.wait = 1.0, 1.0, 1.0, over.wait
+        self.docked, self.ways, self.near = False, [1.0], True
+        def forget(): self.near = False
+        self.forget = forget
     def look(self):
         def done(): self.ahead = 0.0
         return done
@@ -289,7 +292,7 @@ class Dock(Base):
     def way(self): return self.rest
     def done(self): self.rest = 0.0
     def dock(self):
-        self.left = 2.0
+        self.left, left, ways = 2.0, 2.0, [1.0]
         while {condition}:
             self.wait(0.05)
 """
@@ -299,6 +302,12 @@ class Dock(Base):
     ("condition", "ends"),
     [
         ("self.left > 0.0", True),
+        ("self.left", True),
+        ("not self.docked", True),
+        ("left and self.left != 0.0", True),
+        ("self.near", False),
+        ("self.ways", False),
+        ("ways", False),
         ("self.rest > 0.0", False),
         ("self.ahead > 0.0", False),
         ("self.way > 0.0", False),
@@ -330,4 +339,4 @@ def test_an_attribute_that_another_method_sets_may_end_a_loop(
             pass
     finally:
         over.set()
-    assert f"line 14: while {condition}:{own_lines.ENDLESS if ends else ''} (most" in told
+    assert f"line 17: while {condition}:{own_lines.ENDLESS if ends else ''} (most" in told
