@@ -31,6 +31,7 @@ from autograder.judge.verdicts.deciding import (
     is_certain,
     is_readable,
     misnamed,
+    never_ends,
     with_own_lines,
 )
 from autograder.judge.verdicts.exercise_faults import of_exercise
@@ -138,9 +139,13 @@ def check(
                 looks.append(one)
                 if not is_readable(one.verdict):
                     break
-        except OutOfTime:
-            # The machine left no time for a further look, but the last one may prove a mistake, such as a wrong name.
-            if not looks or not is_certain(exercise, looks[-1].evidence):
+        except OutOfTime as cut:
+            # The machine left no time, but a mistake may be proven: a wrong name by the last whole look, or a loop
+            # without an end by the look that was cut.
+            if cut.evidence is not None and never_ends(exercise, cut.evidence):
+                verdict = decide(exercise, cut.evidence, seed)
+                looks.append(Look(Seen(cut.evidence, doubtful=False), cut.evidence, verdict, NO_NAMES))
+            if not looks or looks[-1].verdict.passed or not is_certain(exercise, looks[-1].evidence):
                 raise _too_busy(looks) from None
             verdict = looks[-1].verdict
             looks.append(replace(looks[-1], verdict=replace(verdict, remarks=(*verdict.remarks, CUT))))
@@ -245,6 +250,9 @@ def look(
         hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.verdicts.deciding.misnamed` found in an earlier look.
         card: The card of a student who waits for the check; None if no student waits.
+
+    Raises:
+        OutOfTime: ``hurry`` has ended the look, with what was seen until then, and where the subject was.
     """
 
     def begin_run(ended: Sequence[Part]) -> None:
@@ -253,13 +261,20 @@ def look(
 
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     bench.is_waited_for, bench.begin_run = card is not None, begin_run
-    confirms = False
+    confirms, out_of_time = False, None
     with contextlib.closing(bench), contextlib.suppress(Unanswered), bench.noting_what_is_unreadable():
         try:
             exercise.scenario(bench)
         except Confirmed:
             confirms = True
+        except OutOfTime as error:
+            out_of_time = error
+            bench.note_where_it_hangs()
     # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
-    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet, confirms)
+    evidence = Evidence(parts, reference, pace is Pace.REAL_TIME)
+    if out_of_time is not None:
+        out_of_time.evidence = replace(evidence, before=before)
+        raise out_of_time
+    return Seen(evidence, bench.doubtful, bench.unmet, confirms)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
-from autograder import exercises
+from autograder import exercises, own_lines
 from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, machine_fitness, one_check
 from autograder.judge.bench.bench import TestBench
@@ -17,6 +18,7 @@ from autograder.judge.verdicts import deciding
 from autograder.judge.verdicts.exercise_faults import NOT_THE_EXERCISE, WHAT_TO_DO, ExerciseFailed
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.mistakes import hangs
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.rules import value
 from autograder.verdict import State, not_checked
@@ -268,6 +270,46 @@ def test_a_mistake_that_a_whole_look_proves_ends_a_check_with_its_verdict_howeve
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.text == "It says b."
     assert verdict.remarks == (one_check.CUT,)
+
+
+LOOP = 'Thread 0x1 in the loop of line 3: while self.left:{} (most recent call first):\n  File "cell", line 4 in dock'
+
+
+@pytest.mark.parametrize(
+    ("stack", "mistake", "proves"),
+    [
+        (LOOP.format(own_lines.ENDLESS), hangs.ENDLESS_LOOP, True),
+        (LOOP.format(""), hangs.ENDLESS_LOOP, False),
+        (LOOP.format(own_lines.ENDLESS), replace(hangs.ENDLESS_LOOP, certain=False), False),
+        (LOOP.format(""), Mistake("silent", lambda _: Advice("It is silent.", ""), certain=True), False),
+    ],
+    ids=[
+        "a loop without an end",
+        "a loop that may end",
+        "one that proves nothing",
+        "what needs a whole look",
+    ],
+)
+def test_of_a_look_that_a_busy_machine_cuts_only_an_endless_loop_is_proven(
+    monkeypatch: pytest.MonkeyPatch, stack: str, mistake: Mistake, proves: bool
+) -> None:
+    busy, subject = BusyFor(ANSWER_WITHIN + 1), Anybody()
+
+    def takes_long(bench: Any) -> None:
+        busy.look(hurry=bench._hurry, card=None)
+
+    def note_stack(bench: TestBench) -> None:
+        bench.parts.append(Part("bad", {}, [Event(0.1, "stack", "subject", {"text": stack})]))
+
+    subject.shares_participant = True  # type: ignore[attr-defined]
+    monkeypatch.setattr(one_check, "Hurry", busy.hurry)
+    monkeypatch.setattr(TestBench, "note_where_it_hangs", note_stack)
+    judged = replace(exercise(), mistakes=(mistake,), scenario=takes_long)
+    with contextlib.nullcontext() if proves else pytest.raises(TooBusy, match="The machine is too busy"):
+        checked = one_check.check(judged, cast("Any", subject), busy.stored, seed="s", domain_id=0)
+        assert (checked.verdict.state, checked.verdict.remarks) == (State.FAILED, (one_check.CUT,))
+        assert checked.verdict.diagnosis is not None
+        assert "the loop of line 3: `while self.left:`" in checked.verdict.diagnosis.text
 
 
 def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(

@@ -12,6 +12,7 @@ from autograder.judge.timeline.parting_point import claimed, own_lines_in_words,
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mission.track import ways
+from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.mistakes.uncalled import uncalled
 from autograder.kit.model import UNKNOWN, Advice, Criterion, Exercise, Finding, Mistake
@@ -158,6 +159,12 @@ def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
     """Return True if the evidence proves a mistake, no matter how busy the machine was."""
     found = _recognized(exercise, evidence)
     return found is not None and found[0].certain
+
+
+def never_ends(exercise: Exercise, evidence: Evidence) -> bool:
+    """Return True if the evidence proves a loop without an end: also that of a part of a look, however it goes on."""
+    found = _recognized(exercise, evidence)
+    return found is not None and found[0].certain and found[0].key == ENDLESS_LOOP.key
 
 
 def _cut(text: str, limit: int = MAX_WORDS) -> str:
