@@ -57,6 +57,13 @@ RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
         ),
         ("status", [["CANCELED, long after the request"]], [["CANCELED"]], (), "agrees to cancel the goal"),
         ("left", *RISES, (), "the task asks for numbers that go down"),
+        (
+            "data",
+            [["a", "b", "c"]],
+            [["a", "b", "c", "d"]],
+            (),
+            "stops after 3 messages on /said, which are right; 4",
+        ),
     ],
 )
 def test_what_the_first_wrong_values_show_is_said(
@@ -88,6 +95,7 @@ def test_what_the_first_wrong_values_show_is_said(
             (),
         ),  # said elsewhere, so no slip of the pen
         ("left", RISES[1], [[[3, 2, 2]]], ()),
+        ("data", [["a", "b", "c"], list("abcd")], [list("abcd"), list("abcd")], ()),  # more come another time
     ],
 )
 def test_values_that_show_nothing_are_only_shown(
@@ -132,6 +140,40 @@ def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says
     ]
     output = Output("/said", ("data",), Kind.STEPS, 1e-3)
     advice = located([output], Part("a", {}, [*seen, noted[0]]), Part("a", {}, [noted[1]]), LAW)
+    assert advice is not None
+    assert says in advice.text
+    assert (advice.next_step == GO_THROUGH) is not bool(says)
+
+
+@pytest.mark.parametrize(
+    ("events", "given", "says"),
+    [
+        (
+            "sent 1.0 sent 1.3 said 1.6",
+            "/go",
+            "0.6 s after /go with 1, your node says what is not due, as if /go",
+        ),
+        ("sent 1.0 sent 1.3 said 1.9", "/go", ""),
+        ("sent 1.0 said 1.9", "2 s without an input", "0.9 s after /go with 1, without another input"),
+        ("sent 1.0 said 1.0 said 1.0", "/go", "says the same 2 times"),
+    ],
+)
+def test_what_set_the_time_going_is_said(events: str, given: str, says: str) -> None:
+    words = events.split()
+    kinds = {"sent": ("sent", "/go"), "said": ("message", "/said")}
+    seen = [
+        Event(float(at), *kinds[word], {"fields": {"data": number}})
+        for number, (word, at) in enumerate(zip(words[::2], words[1::2], strict=True), 1)
+    ]
+    came = [["stop"]] * words.count("said")
+
+    def noted(rows: list[list[str]]) -> Event:
+        return Event(2.0, "noted", "/said", {"step": 1, "given": given, "values": rows})
+
+    output = Output("/said", ("data",), Kind.STEPS, 1e-3)
+    law = {"stop if nothing comes for 0.6 seconds": "said"}
+    due = came[: len(came) - 1]
+    advice = located([output], Part("a", {}, [*seen, noted(came)]), Part("a", {}, [noted(due)]), law)
     assert advice is not None
     assert says in advice.text
     assert (advice.next_step == GO_THROUGH) is not bool(says)

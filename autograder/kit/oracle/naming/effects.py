@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from autograder.kit.oracle.naming.deltas import alike, steps_apart
+from autograder.kit.oracle.naming.deltas import alike, rows, steps_apart
 from autograder.kit.oracle.naming.step_words import quoted
 from autograder.kit.oracle.outputs import NUMBER, Kind
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from autograder.kit.evidence import Part
     from autograder.kit.oracle.outputs import Output
 
 FEW = 6
@@ -53,7 +54,8 @@ def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -
         is_whole = len(wrong) == sum(bool(theirs[step]) for step in steps)
         return Effect(f"Your node says everything{name} twice.", is_twice=True) if is_whole else None
     if any(len(mine[step]) != len(theirs[step]) for step in steps):
-        return None
+        once = _only_once(name, [(mine[step], theirs[step]) for step in steps], output.tolerance)
+        return Effect(once) if once else None
     fields = _fields(output, name, [(mine[step], theirs[step]) for step in steps])
     told = (_values(what, pairs, output.tolerance) for what, pairs in fields)
     return next((Effect(text) for text in told if text), None)
@@ -83,6 +85,44 @@ def _fields(output: Output, name: str, listed: Pairs) -> Iterator[tuple[str, Pai
 def _come_twice(pairs: Pairs, tolerance: float) -> bool:
     """Return True if each message comes twice, and nothing else differs."""
     return all(due and alike(came, [one for one in due for _ in range(2)], tolerance) for came, due in pairs)
+
+
+def _only_once(name: str, pairs: Pairs, tolerance: float) -> str:
+    """Return that each value comes the first time that it is due, and never again, if that is so."""
+    said: list[Any] = []
+    is_left_out = False
+    for came, due in pairs:
+        new = [one for number, one in enumerate(due) if one not in [*said, *due[:number]]]
+        if not alike(came, new, tolerance):
+            return ""
+        # Who says a value only when it is another one than before leaves out only the last one.
+        is_left_out = is_left_out or any(one in said[:-1] for one in due)
+        said += new
+    return f"What your node has said{name} once, it never says again." if is_left_out else ""
+
+
+def whenever(output: Output, run: Part, due: Part, others: Sequence[Output]) -> str:
+    """Return the word of another output with which this one is wrong, each time and only then; empty if none is."""
+    theirs = rows(output, due)
+    apart = set(steps_apart(rows(output, run), theirs, output.tolerance))
+    if len(apart) < 2 or apart == set(theirs):
+        return ""
+    for other in others:
+        if other is output or other.kind is not Kind.STEPS:
+            continue
+        told = rows(other, due)
+        for column, path in enumerate(other.paths):
+            words = {
+                step: {one[column] for one in told.get(step, ()) if isinstance(one[column], str)}
+                for step in theirs
+            }
+            for word in set().union(*words.values()):
+                if {step for step in theirs if word in words[step]} == apart:
+                    return (
+                        f"What your node says on {output.name} is wrong each time that {path} on {other.name} is "
+                        f"{_word(word)}, and only then."
+                    )
+    return ""
 
 
 def _values(what: str, pairs: Pairs, tolerance: float) -> str:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder.kit.model import card_words, filled_in
-from autograder.kit.oracle.naming.deltas import rows, steps_apart
-from autograder.kit.oracle.naming.step_words import input_of
+from autograder.kit.oracle.naming.deltas import alike, rows, steps_apart
+from autograder.kit.oracle.naming.step_words import input_in_words, input_of, inputs_of, is_wait
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.rules import same, value
 
@@ -23,17 +23,22 @@ if TYPE_CHECKING:
 _WORDS = card_words(__file__)
 LONGEST_PIECE, ALIKE = 30, 4
 """The most letters that are missing in a text, or too many, for a card to say so; and how many have to follow alike."""
+AT_ONCE, LATE = 0.05, 0.11
+"""Seconds: between two messages of one callback, and by which a timer that looks ten times a second is late."""
+LAST, MANY = 3, 3
+"""The number of inputs that may have set a timer, and of messages from which on a number of them may be meant."""
 _WHOLE_MESSAGE = re2.compile(r"\.(?:msg|srv|action)\.\w+\(")
 _NUMBER = re2.compile(r"\d")
 
 
-def hint(output: Output, run: Part, due: Part) -> Advice | None:
+def hint(output: Output, run: Part, due: Part, seconds: Sequence[float] = ()) -> Advice | None:
     """Return what the first step shows in which an output is not the solution's; None if its values show nothing.
 
     Args:
         output: The output.
         run: The run of the subject.
         due: The run of the solution in the same drawing.
+        seconds: The times that the task names.
     """
     if output.kind is not Kind.STEPS:
         return None
@@ -42,7 +47,13 @@ def hint(output: Output, run: Part, due: Part) -> Advice | None:
     if not steps:
         return None
     came, asked = mine[steps[0]], theirs[steps[0]]
-    if told := _too_often(came, asked) or (None if asked else _late(output, run, came)):
+    said, is_silent = _messages(output, run, steps[0])
+    if told := (
+        _too_often(came, asked, said)
+        or (_set_going(said, is_silent, run, seconds) if said and len(came) > len(asked) else None)
+        or _too_few(output, came, asked, mine)
+        or (None if asked else _late(output, run, came))
+    ):
         return told
     inputs = [event for event, step in _inputs(output, run) if step <= steps[0]]
     texts = [list(_texts(list(values.values()))) for values in (mine, theirs)]
@@ -85,10 +96,50 @@ def _pairs(output: Output, came: Sequence[Any], asked: Sequence[Any]) -> Iterato
             return
 
 
-def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Advice | None:
+def _messages(output: Output, run: Part, step: int) -> tuple[list[Event], bool]:
+    """Return the messages of an output that came in a step, and whether the judge only let time pass in it."""
+    noted = run.of("noted", output.name)
+    place = next(n for n, one in enumerate(noted) if one.data["step"] == step)
+    start = run.events.index(noted[place - 1]) if place else 0
+    between = run.events[start : run.events.index(noted[place])]
+    messages = [event for event in between if event.kind == "message" and event.name == output.name]
+    return messages, is_wait(noted[place])
+
+
+def _too_often(came: Sequence[Any], asked: Sequence[Any], said: Sequence[Event]) -> Advice | None:
     if len(asked) != 1 or len(came) < 2 or any(one != asked[0] for one in came):
         return None
+    if said and said[-1].moment - said[0].moment > AT_ONCE:
+        return None
     return filled_in(_WORDS["too_often"], times=len(came))
+
+
+def _set_going(said: Sequence[Event], is_silent: bool, run: Part, seconds: Sequence[float]) -> Advice | None:
+    """Return after which input a message came that is not due, if the node's time runs since then."""
+    inputs = [event for event in inputs_of(run) if event.moment < said[-1].moment]
+    for event, newer in reversed([*pairwise(inputs)][-LAST:]):
+        passed = said[-1].moment - event.moment
+        if any(0 <= passed - one <= LATE for one in seconds):
+            return filled_in(
+                _WORDS["not_set_back"],
+                seconds=f"{passed:.2g}",
+                given=input_in_words(event),
+                newer=input_in_words(newer),
+            )
+    if not is_silent or not inputs:
+        return None
+    passed = said[-1].moment - inputs[-1].moment
+    return filled_in(_WORDS["by_a_timer"], seconds=f"{passed:.2g}", given=input_in_words(inputs[-1]))
+
+
+def _too_few(
+    output: Output, came: Sequence[Any], asked: Sequence[Any], mine: Mapping[int, Any]
+) -> Advice | None:
+    if not MANY <= len(came) < len(asked) or len(came) < max(map(len, mine.values())):
+        return None
+    if not alike(came, asked[: len(came)], output.tolerance):
+        return None
+    return filled_in(_WORDS["too_few"], times=len(came), name=output.name, due=len(asked))
 
 
 def _late(output: Output, run: Part, came: Sequence[Any]) -> Advice | None:

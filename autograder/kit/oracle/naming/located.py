@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
+import re2
+
 from autograder.kit.model import Advice
 from autograder.kit.oracle.naming.deltas import rows
-from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.naming.effects import effect, whenever
 from autograder.kit.oracle.naming.first_values import hint
 from autograder.kit.oracle.outputs import Kind
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 
 ALIKE = 0.5
 """The share of common steps from which on mutants at the place of a sentence are like the subject."""
+_SECONDS = re2.compile(r"\b(\d+(?:\.\d+)?) ?s(?:econds?)?\b")
 GO_THROUGH = "Go through your code with this input, step by step, and compare it with the task."
 
 
@@ -36,6 +39,7 @@ def located(
         near: The sentence that is most likely about it; empty if none is.
     """
     failed = _failed(outputs, run, due)
+    seconds = [float(one) for sentence in law for one in _SECONDS.findall(sentence)]
     wholes = {output: effect(output, rows(output, run), rows(output, due)) for output in failed}
     for output in sorted(failed, key=lambda one: not wholes[one]):
         finding, whole = output.compared(run, due), wholes[output]
@@ -46,10 +50,11 @@ def located(
         what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
-        values = hint(output, run, due) or Advice("", GO_THROUGH)
+        values = hint(output, run, due, seconds) or Advice("", GO_THROUGH)
         shows = "" if whole and whole.is_twice else values.text
+        all_steps = whole.text if whole else whenever(output, run, due, outputs)
         # The values show more than a sentence of the task does.
-        words = (whole.text if whole else "", shows, what, says * (not shows))
+        words = (all_steps, shows, what, says * (not shows))
         return Advice(" ".join(filter(None, words)), values.next_step, uses=uses)
     return None
 

@@ -31,10 +31,12 @@ def when(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -
         unheard: The number of inputs that came before the judge listened.
     """
     given = str(noted.data["given"])
-    inputs = _inputs(part)
+    inputs = inputs_of(part)
     if not noted.data["step"]:
-        return f"after {_input(inputs[unheard - 1])}" if 0 < unheard <= len(inputs) else "at the start"
-    waits = [*takewhile(_is_wait, [noted, *reversed(earlier)])]
+        return (
+            f"after {input_in_words(inputs[unheard - 1])}" if 0 < unheard <= len(inputs) else "at the start"
+        )
+    waits = [*takewhile(is_wait, [noted, *reversed(earlier)])]
     before = earlier[: 1 + len(earlier) - len(waits)] if waits else []
     if before and before[-1].data["step"]:
         seconds = sum(float(wait.data["given"].removesuffix(WAITED)) for wait in waits)
@@ -43,19 +45,20 @@ def when(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -
     event = input_of(noted, earlier, part, unheard)
     if event is None:
         return f"after {given}" if given else "at the start"
-    told = _input(event)
+    told = input_in_words(event)
     return f"after {told}{f', then {rest}' * bool(rest)}" if told != name else f"after {given}"
 
 
 def input_of(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -> Event | None:
     """Return the input of a step; None if it has none. For the arguments see :func:`when`."""
     name = _name(noted)
-    sent = [event for event in _inputs(part)[unheard:] if event.name == name]
+    sent = [event for event in inputs_of(part)[unheard:] if event.name == name]
     number = sum(_name(event) == name for event in earlier)
     return sent[number] if number < len(sent) else None
 
 
-def _inputs(part: Part) -> list[Event]:
+def inputs_of(part: Part) -> list[Event]:
+    """Return the inputs of a run, in order of time."""
     return [event for event in part.events if event.kind in ("sent", "asked")]
 
 
@@ -64,14 +67,15 @@ def _name(noted: Event) -> str:
     return str(noted.data["given"]).partition(", then ")[0]
 
 
-def _input(event: Event) -> str:
+def input_in_words(event: Event) -> str:
     """Return an input in words: its name, and its first fields."""
     fields = list(_named(event.data["fields"]))
     told = ", ".join(f"{path} = {value}" if path != "data" else value for path, value in fields[:FIELDS])
     return f"{event.name} with {told}{', …' * (len(fields) > FIELDS)}" if told else event.name
 
 
-def _is_wait(noted: Event) -> bool:
+def is_wait(noted: Event) -> bool:
+    """Return True for a step in which the judge only lets time pass."""
     return bool(noted.data["step"]) and str(noted.data["given"]).endswith(WAITED)
 
 
