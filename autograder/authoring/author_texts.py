@@ -1,4 +1,4 @@
-"""What commands tell authors. Each text stands on one line of ``author_texts.toml``, under its name."""
+"""Texts of commands for authors. Each text stands on one line of ``author_texts.toml``, under its name."""
 
 from __future__ import annotations
 

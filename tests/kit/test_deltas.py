@@ -157,7 +157,7 @@ NUMBERS = [1.0, -2.0, 0.5, 3.0, -1.0]
         (
             ["far", "near", None, None, "up"],
             ["far", "near", "far", "near", "up"],
-            "What your node has said on /said once, it never says again.",
+            "A message that your node has said on /said once, it never says again.",
         ),
         (["far", None, "near", None], ["far", "far", "near", "near"], ""),  # says what is new
     ],
@@ -183,7 +183,7 @@ def test_everything_comes_twice_only_if_each_message_does(doubled: int, text: st
     [
         (
             {1, 3},
-            "What your node says on /said is wrong each time that status on /dock is “ABORTED”, and only then.",
+            "Your node is wrong on /said each time that status on /dock is “ABORTED”, and only then.",
         ),
         ({1}, ""),
         ({1, 2, 3}, ""),

@@ -49,7 +49,7 @@ def reason_against_name(name: str) -> str:
 
 
 def odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
-    """Yield the notebooks that are no ordinary files, each with the reason."""
+    """Yield the notebooks that cannot be read as files, each with the reason."""
     for path in paths:
         reason = reason_against_file(path)
         if reason:

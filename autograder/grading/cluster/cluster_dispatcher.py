@@ -119,7 +119,7 @@ class ClusterDispatcher(Dispatcher):
         super().__init__(link, judge)
         self._address, self._boxed, self._tell = address, boxed, tell
         self._names: dict[str, str] = {}
-        """What messages call each worker, by its address."""
+        """The name of each worker in messages, by its address."""
         self._refused: dict[str, str] = {}
         self._troubles: Counter[str] = Counter()
         """The number of consecutive notebooks that a worker could not execute because the grader itself failed."""

@@ -95,10 +95,10 @@ def _only_once(name: str, pairs: Pairs, tolerance: float) -> str:
         new = [one for number, one in enumerate(due) if one not in [*said, *due[:number]]]
         if not alike(came, new, tolerance):
             return ""
-        # Who says a value only when it is another one than before leaves out only the last one.
+        # A node that says only changes leaves out a value only if it is also the last one.
         is_left_out = is_left_out or any(one in said[:-1] for one in due)
         said += new
-    return f"What your node has said{name} once, it never says again." if is_left_out else ""
+    return f"A message that your node has said{name} once, it never says again." if is_left_out else ""
 
 
 def whenever(output: Output, run: Part, due: Part, others: Sequence[Output]) -> str:
@@ -119,7 +119,7 @@ def whenever(output: Output, run: Part, due: Part, others: Sequence[Output]) -> 
             for word in set().union(*words.values()):
                 if {step for step in theirs if word in words[step]} == apart:
                     return (
-                        f"What your node says on {output.name} is wrong each time that {path} on {other.name} is "
+                        f"Your node is wrong on {output.name} each time that {path} on {other.name} is "
                         f"{_word(word)}, and only then."
                     )
     return ""
