@@ -20,8 +20,6 @@ from typing import TYPE_CHECKING, Self
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.kit.evidence import Evidence
-
 
 class JudgeFailed(RuntimeError):
     """There is no verdict, because the judge or its machine failed; the message says why."""
@@ -103,7 +101,7 @@ SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine:
 """A sentence for the student, which quotes the diagnosis of a look that may be wrong because of the load."""
 ANSWER_WITHIN = 30.0
 """Time limit in seconds of wall time for a check in a notebook on a crowded machine. At the limit, the check ends
-without a verdict, unless a mistake is proven.
+without a verdict.
 """
 _COUNT_EVERY = 0.1
 """Seconds between two counts of the threads."""
@@ -117,12 +115,7 @@ class OutOfTime(BaseException):
     """A check on an overloaded machine took too long.
 
     This is a BaseException, so that ``except Exception`` does not catch it.
-
-    Attributes:
-        evidence: What the judge has seen in the look that ends with it; None if it is raised outside of a look.
     """
-
-    evidence: Evidence | None = None
 
 
 class Crowding:

@@ -36,7 +36,7 @@ from autograder.judge.verdicts.deciding import (
 )
 from autograder.judge.verdicts.exercise_faults import of_exercise
 from autograder.kit.bench import Pace
-from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import UNKNOWN, Exercise
 from autograder.kit.runners import runner_trouble
 
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from autograder.judge.subject import Subject
-    from autograder.kit.evidence import Part
     from autograder.verdict import Verdict
 
 
@@ -128,7 +127,9 @@ def check(
     # Hurry, and tell what is known so far, only if a student may be waiting, that is, in a check cell that no grader
     # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
-    hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else lambda: None
+    hurry = _KeptStack(
+        Hurry(is_building=lambda: subject.is_building) if waited_for else lambda: None, subject
+    )
     card = GrowingCard(exercise, criterion_result, subject.tell_so_far) if waited_for else None
     look_at = partial(look, exercise, subject, seed=seed, domain_id=domain_id, hurry=hurry, card=card)
     subject.begin(domain_id)
@@ -139,12 +140,10 @@ def check(
                 looks.append(one)
                 if not is_readable(one.verdict):
                     break
-        except OutOfTime as cut:
+        except OutOfTime:
             # The machine left no time, but a mistake may be proven: a wrong name by the last whole look, or a loop
-            # without an end by the look that was cut.
-            if cut.evidence is not None and never_ends(exercise, cut.evidence):
-                verdict = decide(exercise, cut.evidence, seed)
-                looks.append(Look(Seen(cut.evidence, doubtful=False), cut.evidence, verdict, NO_NAMES))
+            # without an end by where the subject is.
+            looks += _cut_look(exercise, reference, seed, hurry.stack)
             if not looks or looks[-1].verdict.passed or not is_certain(exercise, looks[-1].evidence):
                 raise _too_busy(looks) from None
             verdict = looks[-1].verdict
@@ -158,6 +157,32 @@ def check(
         raise _too_busy(looks)
     verdict = replace(last.verdict, seconds=round(time.monotonic() - began, 3))
     return replace(last, verdict=verdict, crowded=crowded)
+
+
+@dataclass
+class _KeptStack:
+    """Ends a look on a busy machine, and keeps where the subject is then: no load explains a loop without an end."""
+
+    hurry: Callable[[], None]
+    subject: Subject
+    stack: Event | None = None
+
+    def __call__(self) -> None:
+        try:
+            self.hurry()
+        except OutOfTime:
+            text = "" if self.subject.ended else self.subject.stack()
+            self.stack = Event(0.0, "stack", "subject", {"text": text, "busy": self.subject.busy})
+            raise
+
+
+def _cut_look(exercise: Exercise, reference: Reference, seed: str, stack: Event | None) -> list[Look]:
+    """Return the look that a busy machine cut, if the stacks of the subject prove a loop without an end."""
+    evidence = Evidence([Part("", {}, [stack] if stack else [])], reference)
+    if not never_ends(exercise, evidence):
+        return []
+    verdict = decide(exercise, evidence, seed)
+    return [Look(Seen(evidence, doubtful=False), evidence, verdict, NO_NAMES)]
 
 
 def _looks(
@@ -250,9 +275,6 @@ def look(
         hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.verdicts.deciding.misnamed` found in an earlier look.
         card: The card of a student who waits for the check; None if no student waits.
-
-    Raises:
-        OutOfTime: ``hurry`` has ended the look, with what was seen until then, and where the subject was.
     """
 
     def begin_run(ended: Sequence[Part]) -> None:
@@ -261,20 +283,13 @@ def look(
 
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     bench.is_waited_for, bench.begin_run = card is not None, begin_run
-    confirms, out_of_time = False, None
+    confirms = False
     with contextlib.closing(bench), contextlib.suppress(Unanswered), bench.noting_what_is_unreadable():
         try:
             exercise.scenario(bench)
         except Confirmed:
             confirms = True
-        except OutOfTime as error:
-            out_of_time = error
-            bench.note_where_it_hangs()
     # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
-    evidence = Evidence(parts, reference, pace is Pace.REAL_TIME)
-    if out_of_time is not None:
-        out_of_time.evidence = replace(evidence, before=before)
-        raise out_of_time
-    return Seen(evidence, bench.doubtful, bench.unmet, confirms)
+    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet, confirms)

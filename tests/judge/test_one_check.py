@@ -35,7 +35,8 @@ USUAL = exercises.get("lab_1_2.listener")
 
 class Anybody:
     in_a_notebook = True
-    is_building = False
+    is_building = ended = False
+    busy = 0.0
 
     def __init__(self) -> None:
         self.told: list[str] = []
@@ -49,6 +50,9 @@ class Anybody:
 
     def own_lines(self) -> list[OwnLine]:
         return []
+
+    def stack(self) -> str:
+        return ""
 
 
 def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
@@ -294,17 +298,10 @@ def test_of_a_look_that_a_busy_machine_cuts_only_an_endless_loop_is_proven(
     monkeypatch: pytest.MonkeyPatch, stack: str, mistake: Mistake, proves: bool
 ) -> None:
     busy, subject = BusyFor(ANSWER_WITHIN + 1), Anybody()
-
-    def takes_long(bench: Any) -> None:
-        busy.look(hurry=bench._hurry, card=None)
-
-    def note_stack(bench: TestBench) -> None:
-        bench.parts.append(Part("bad", {}, [Event(0.1, "stack", "subject", {"text": stack})]))
-
-    subject.shares_participant = True  # type: ignore[attr-defined]
+    monkeypatch.setattr(subject, "stack", lambda: stack)
     monkeypatch.setattr(one_check, "Hurry", busy.hurry)
-    monkeypatch.setattr(TestBench, "note_where_it_hangs", note_stack)
-    judged = replace(exercise(), mistakes=(mistake,), scenario=takes_long)
+    monkeypatch.setattr(one_check, "look", busy.look)
+    judged = replace(exercise(), mistakes=(mistake,))
     with contextlib.nullcontext() if proves else pytest.raises(TooBusy, match="The machine is too busy"):
         checked = one_check.check(judged, cast("Any", subject), busy.stored, seed="s", domain_id=0)
         assert (checked.verdict.state, checked.verdict.remarks) == (State.FAILED, (one_check.CUT,))
