@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import Pace
+from autograder.kit.oracle.naming.deltas import rows
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Part
     from autograder.kit.oracle.outputs import Output
 
 
@@ -25,14 +25,17 @@ class MistakesAgain:
 
     def __init__(self, bench: Bench, outputs: Sequence[Output]) -> None:
         self._bench = bench
-        self._wrong: list[tuple[Output, Mapping[int, Sequence[Any]]]] = []
+        self._wrong: Sequence[tuple[Output, Mapping[int, Any]]] = ()
         if bench.before is None or bench.pace is Pace.FAST:
             return
         run = bench.before.main
         due = bench.reference.part(run.name)
         failed = [output for output in outputs if not output.agrees(run, due)]
         noted = [(output, event.data["step"]) for output in failed if (event := output.noted_at(run, due))]
-        wrong = [(output, _until(step, output, run)) for output, step in noted]
+        wrong = [
+            (output, {at: values for at, values in rows(output, run).items() if at <= step})
+            for output, step in noted
+        ]
         # If an output has no steps, or ended before its first wrong one, only a whole look tells. So it does of a
         # subject that was silent: by another clock it may say something in real time.
         if len(noted) == len(failed) and all(any(before.values()) for _, before in wrong):
@@ -60,9 +63,3 @@ class MistakesAgain:
             for output, before in self._wrong
             for step, told in before.items()
         )
-
-
-def _until(last: int, output: Output, run: Part) -> Mapping[int, Sequence[Any]]:
-    """Return the values of an output, by step, up to a given step."""
-    noted = [event.data for event in run.of("noted", output.name)]
-    return {data["step"]: data["values"] for data in noted if data["step"] <= last}

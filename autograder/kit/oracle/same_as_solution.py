@@ -19,7 +19,7 @@ from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
-from autograder.kit.model import Finding
+from autograder.kit.model import Finding, card_words
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.mistakes_again import MistakesAgain
 from autograder.kit.oracle.naming.calls_in_turn import IN_TURN, called_in_turn
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part, Reference
     from autograder.kit.model import Exercise
 
+_WORDS = card_words(__file__)
 __all__ = ["Goal", "SameAsSolution", "Sets", "To"]
 
 DRAWINGS = 4
@@ -53,8 +54,7 @@ DRAWING = "drawing "
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 PERIODS = 3
-"""The number of periods in a row without an input that show a rate: an interval in which an input comes is left out.
-"""
+"""The number of periods in a row that show a rate, without an input in any of them."""
 MANY = 100
 """The most feedback messages of a goal that are expected if the feedback is not compared."""
 TOLERANCE = 1e-3
@@ -165,35 +165,18 @@ class SameAsSolution:
             in_turn = partial(called_in_turn, serves, asks)
             self._draft.knows("one_at_a_time", in_turn, *IN_TURN, late=True)
         for output in self._of(Kind.PARAMETER):
-            self._draft.knows(
-                "parameter_not_declared",
-                output.is_undeclared,
-                f"Your node has no parameter {output.name}.",
-                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
-                certain=True,
-            )
-            self._draft.knows(
-                "other_range",
-                output.other_description,
-                f"Your node declares the parameter {output.name} as {{0[0]}}; the task asks for {{0[1]}}.",
-                "Compare the type of its default, and the range in its ParameterDescriptor, with the task.",
-                certain=True,
-            )
+            self._knows("parameter_not_declared", output.is_undeclared, output, certain=True)
+            self._knows("other_range", output.other_description, output, certain=True)
         for output in self._of(Kind.RATE):
-            self._draft.knows(
-                "only_if_new",
-                output.only_news,
-                f"On {output.name} a message comes only when something is new; the task asks for one every "
-                f"{output.period:g} s, even if nothing has changed.",
-                "Publish at each call of the timer's callback, whatever was published before.",
-                late=True,
-            )
-            says = (
-                f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
-            )
-            self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD, late=True)
+            self._knows("only_if_new", output.only_news, output, late=True)
+            self._knows("wrong_rate", output.another_rate, output, late=True)
         for output in self._outputs:
             self._draft.criterion(output.key, output.title.replace("?", ""))(partial(_by_one_server, output))
+
+    def _knows(self, key: str, found: Callable[[Part, Part], object], output: Output, **how: Any) -> None:
+        """Add a mistake about one output, whose name and period its words contain."""
+        words = (one.format(output=output, keep_the_period=KEEP_THE_PERIOD) for one in _WORDS[key])
+        self._draft.knows(key, found, *words, **how)
 
     def _check_rates(self, rates: Mapping[str, float], steps: Sequence[Step]) -> None:
         """Raise ``ValueError`` if it would depend on chance whether two messages come without an input in between."""
@@ -257,15 +240,11 @@ class SameAsSolution:
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         turns: list[Turn] = []
         again = MistakesAgain(bench, self._outputs)
-        went_through = self._describe(bench) and all(
-            self._takes(
-                met,
-                Turn(number, step, 0 if number == 0 else len(bench.seen().events), bench.moment),
-                turns,
-                again,
-            )
+        begun = (
+            Turn(number, step, len(bench.seen().events) if number else 0, bench.moment)
             for number, step in enumerate([self._pause, *steps])
         )
+        went_through = self._describe(bench) and all(self._takes(met, one, turns, again) for one in begun)
         if bench.pace is Pace.REAL_TIME:
             bench.settle()
             for turn, following in zip_longest(turns, turns[1:]):
