@@ -142,7 +142,7 @@ def check(
                     break
         except OutOfTime:
             # The machine left no time, but a mistake may be proven: a wrong name by the last whole look, or a loop
-            # without an end by where the subject is.
+            # without an end by the stacks of the subject.
             looks += _cut_look(exercise, reference, seed, hurry.stack)
             if not looks or looks[-1].verdict.passed or not is_certain(exercise, looks[-1].evidence):
                 raise _too_busy(looks) from None
@@ -161,7 +161,7 @@ def check(
 
 @dataclass
 class _KeptStack:
-    """Ends a look on a busy machine, and keeps where the subject is then: no load explains a loop without an end."""
+    """Ends a look on a busy machine, and keeps the stacks of the subject: no load explains a loop without an end."""
 
     hurry: Callable[[], None]
     subject: Subject
