@@ -28,10 +28,10 @@ from autograder.judge.timeline.growing_card import GrowingCard
 from autograder.judge.verdicts.deciding import (
     criterion_result,
     decide,
+    endless_loop,
     is_certain,
     is_readable,
     misnamed,
-    never_ends,
     with_own_lines,
 )
 from autograder.judge.verdicts.exercise_faults import of_exercise
@@ -127,13 +127,13 @@ def check(
     # Hurry, and tell what is known so far, only if a student may be waiting, that is, in a check cell that no grader
     # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
-    hurry = _KeptStack(
-        Hurry(is_building=lambda: subject.is_building) if waited_for else lambda: None, subject
-    )
+    stacks: list[Part] = []
+    hurry = _asking(subject, stacks) if waited_for else lambda: None
     card = GrowingCard(exercise, criterion_result, subject.tell_so_far) if waited_for else None
     look_at = partial(look, exercise, subject, seed=seed, domain_id=domain_id, hurry=hurry, card=card)
     subject.begin(domain_id)
     looks: list[Look] = []
+    cut = False
     with of_exercise(exercise, reference):
         try:
             for one in _looks(exercise, reference, seed, look_at, practice, card, subject):
@@ -141,15 +141,22 @@ def check(
                 if not is_readable(one.verdict):
                     break
         except OutOfTime:
-            # The machine left no time, but a mistake may be proven: a wrong name by the last whole look, or a loop
-            # without an end by the stacks of the subject.
-            looks += _cut_look(exercise, reference, seed, hurry.stack)
-            if not looks or looks[-1].verdict.passed or not is_certain(exercise, looks[-1].evidence):
+            # The machine left no time for a further look, but the last one may prove a mistake, such as a wrong name,
+            # or the stacks a loop without an end.
+            evidence = Evidence(stacks, reference)
+            if loop := endless_loop(exercise, evidence):
+                looks.append(
+                    Look(Seen(evidence, doubtful=False), evidence, replace(loop, seed=seed), NO_NAMES)
+                )
+            elif not looks or not is_certain(exercise, looks[-1].evidence):
                 raise _too_busy(looks) from None
             verdict = looks[-1].verdict
             looks.append(replace(looks[-1], verdict=replace(verdict, remarks=(*verdict.remarks, CUT))))
+            cut = True
         last = looks[-1]
-        decides = last.verdict.passed or not is_readable(last.verdict) or is_certain(exercise, last.evidence)
+        decides = (
+            cut or last.verdict.passed or not is_readable(last.verdict) or is_certain(exercise, last.evidence)
+        )
     if not decides and not (delivered and delivers()):
         raise NotDelivered(NOT_DELIVERED)
     crowded = not decides and (last.crowded or last.seen.unmet)
@@ -159,30 +166,19 @@ def check(
     return replace(last, verdict=verdict, crowded=crowded)
 
 
-@dataclass
-class _KeptStack:
-    """Ends a look on a busy machine, and keeps the stacks of the subject: no load explains a loop without an end."""
+def _asking(subject: Subject, stacks: list[Part]) -> Callable[[], None]:
+    """Return a function that ends a check like :class:`Hurry`, and first adds a part with the subject's stacks."""
+    hurry = Hurry(is_building=lambda: subject.is_building)
 
-    hurry: Callable[[], None]
-    subject: Subject
-    stack: Event | None = None
-
-    def __call__(self) -> None:
+    def ask_and_end() -> None:
         try:
-            self.hurry()
+            hurry()
         except OutOfTime:
-            text = "" if self.subject.ended else self.subject.stack()
-            self.stack = Event(0.0, "stack", "subject", {"text": text, "busy": self.subject.busy})
+            # Its processor time proves nothing: the subject may wait for what the judge has not done yet.
+            stacks.append(Part("cut", {}, [Event(0.0, "stack", "subject", {"text": subject.stack()})]))
             raise
 
-
-def _cut_look(exercise: Exercise, reference: Reference, seed: str, stack: Event | None) -> list[Look]:
-    """Return the look that a busy machine cut, if the stacks of the subject prove a loop without an end."""
-    evidence = Evidence([Part("", {}, [stack] if stack else [])], reference)
-    if not never_ends(exercise, evidence):
-        return []
-    verdict = decide(exercise, evidence, seed)
-    return [Look(Seen(evidence, doubtful=False), evidence, verdict, NO_NAMES)]
+    return ask_and_end
 
 
 def _looks(

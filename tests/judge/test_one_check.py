@@ -35,11 +35,15 @@ USUAL = exercises.get("lab_1_2.listener")
 
 class Anybody:
     in_a_notebook = True
-    is_building = ended = False
-    busy = 0.0
+    is_building = False
+    busy = 2 * hangs.LOOPS
 
-    def __init__(self) -> None:
+    def __init__(self, stacks: str = "") -> None:
         self.told: list[str] = []
+        self._stacks = stacks
+
+    def stack(self) -> str:
+        return self._stacks
 
     def begin(self, domain_id: int) -> None:
         del domain_id
@@ -50,9 +54,6 @@ class Anybody:
 
     def own_lines(self) -> list[OwnLine]:
         return []
-
-    def stack(self) -> str:
-        return ""
 
 
 def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
@@ -297,8 +298,7 @@ LOOP = 'Thread 0x1 in the loop of line 3: while self.left:{} (most recent call f
 def test_of_a_look_that_a_busy_machine_cuts_only_an_endless_loop_is_proven(
     monkeypatch: pytest.MonkeyPatch, stack: str, mistake: Mistake, proves: bool
 ) -> None:
-    busy, subject = BusyFor(ANSWER_WITHIN + 1), Anybody()
-    monkeypatch.setattr(subject, "stack", lambda: stack)
+    busy, subject = BusyFor(ANSWER_WITHIN + 1), Anybody(stack)
     monkeypatch.setattr(one_check, "Hurry", busy.hurry)
     monkeypatch.setattr(one_check, "look", busy.look)
     judged = replace(exercise(), mistakes=(mistake,))

@@ -161,10 +161,14 @@ def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
     return found is not None and found[0].certain
 
 
-def never_ends(exercise: Exercise, evidence: Evidence) -> bool:
-    """Return True if the evidence proves a loop without an end: also that of a part of a look, however it goes on."""
-    found = _recognized(exercise, evidence)
-    return found is not None and found[0].certain and found[0].key == ENDLESS_LOOP.key
+def endless_loop(exercise: Exercise, stacks: Evidence) -> Verdict | None:
+    """Return a fail if the stacks of a subject prove a loop without an end, whatever else it did; else None."""
+    known = (one for one in exercise.mistakes if one.key == ENDLESS_LOOP.key and one.certain)
+    proven = tuple(one for one in known if one.recognize(stacks))
+    if not proven:
+        return None
+    diagnosis, _ = diagnose(replace(exercise, mistakes=proven), stacks)
+    return failed(exercise.id, exercise.title, float(exercise.points), diagnosis)
 
 
 def _cut(text: str, limit: int = MAX_WORDS) -> str:

@@ -3,7 +3,7 @@
 # could_earn = "A judge that ends because what it has just seen on the graph is gone, or has another type, when it asks for it."
 # earned = { "lab_1_2.talker" = 10 }
 # at_most = true
-# undefended = "rclpy raises an error for a node that has gone between two queries."
+# undefended = "Nothing in one run: without the judge's answer to a node that goes between two queries it was not lost, either."
 
 # %% right TalkerNode
 
