@@ -62,7 +62,7 @@ RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
             [["a", "b", "c"]],
             [["a", "b", "c", "d"]],
             (),
-            "stops after 3 messages on /said, which are right; 4",
+            "sends 3 messages on /said, which are right, and then gives up; 4",
         ),
     ],
 )
@@ -151,10 +151,10 @@ def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says
         (
             "sent 1.0 sent 1.3 said 1.6",
             "/go",
-            "0.6 s after /go with 1, your node says what is not due, as if /go",
+            "it looks as if /go with 2, which came in between, does not set",
         ),
         ("sent 1.0 sent 1.3 said 1.9", "/go", ""),
-        ("sent 1.0 said 1.9", "2 s without an input", "0.9 s after /go with 1, without another input"),
+        ("sent 1.0 said 1.9", "2 s without an input", "it looks as if /go with 1 sets your timer going"),
         ("sent 1.0 said 1.0 said 1.0", "/go", "says the same 2 times"),
     ],
 )
