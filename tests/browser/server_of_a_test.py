@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+import socket
 import subprocess
 import sys
 import threading
+import time
 from typing import TYPE_CHECKING, Any
 from urllib.request import Request, urlopen
 
@@ -44,15 +46,26 @@ def jupyter_server(
         try:
             for line in server.stderr:
                 said.append(line)
-                if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
+                if found := re.search(r"http://127\.0\.0\.1:(\d+)/", line):
                     break
             else:
                 pytest.fail("the server did not start:\n" + "".join(said))
             # A full pipe would stop it.
             threading.Thread(target=server.stderr.read, daemon=True).start()
+            _await_open(server, int(found[1]))
             yield found.group()
         finally:
             server.terminate()
+
+
+def _await_open(server: subprocess.Popen[str], port: int) -> None:
+    """Wait until the server listens: it names its port before that (``jupyter_server/serverapp.py``)."""
+    while server.poll() is None:
+        with contextlib.suppress(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", port)).close()
+            return
+        time.sleep(0.05)
+    pytest.fail("the server ended before it listened")
 
 
 def forget_what_was_open(server: str) -> None:
