@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from autograder import course
-from autograder.grading import batch_steps
-from autograder.grading.cluster import dask_worker
+from autograder.grading.cluster import cluster_dispatcher, dask_worker
 from autograder.grading.course_version import (
     GRADER,
     JUDGE,
@@ -19,7 +18,6 @@ from autograder.grading.course_version import (
     course_version,
     part_of,
 )
-from autograder.grading.running import task_dispatcher
 from tests.cases import cases
 from tests.copies import copied
 from tests.reach.imports import imports_of
@@ -107,8 +105,8 @@ def test_it_does_not_depend_on_where_the_course_lies(copy: Path, monkeypatch: py
     assert version() == here
 
 
-def test_runs_and_clusters_go_by_the_same_value() -> None:
-    modules = (batch_steps, dask_worker, task_dispatcher)
+def test_both_ends_of_a_cluster_go_by_the_same_value() -> None:
+    modules = (dask_worker, cluster_dispatcher)
     assert {vars(module)["course_version"] for module in modules} == {course_version}
 
 
