@@ -177,3 +177,22 @@ def test_what_set_the_time_going_is_said(events: str, given: str, says: str) -> 
     assert advice is not None
     assert says in advice.text
     assert (advice.next_step == GO_THROUGH) is not bool(says)
+
+
+def test_messages_of_a_look_in_real_time_belong_to_no_step() -> None:
+    """It notes all steps at its end: the last message of all is not the one that is not due in the first step."""
+    output = Output("/said", ("data",), Kind.STEPS, 1e-3)
+    sent = [Event(at, "sent", "/go", {"fields": {"data": at}}) for at in (1.0, 2.0)]
+    said = [Event(at, "message", "/said", {"fields": {"data": "stop"}}) for at in (1.1, 2.9)]
+
+    def run(first: list[list[str]]) -> Part:
+        steps = enumerate((first, [["stop"]]), 1)
+        noted = [
+            Event(4.0, "noted", "/said", {"step": step, "given": "2 s without an input", "values": rows})
+            for step, rows in steps
+        ]
+        return Part("a", {}, [*sent, *said, *noted])
+
+    advice = located([output], run([["stop"]]), run([]), {"stop after 0.9 s": "said"})
+    assert advice is not None
+    assert advice.next_step == GO_THROUGH

@@ -116,7 +116,7 @@ def whenever(output: Output, run: Part, due: Part, others: Sequence[Output]) -> 
                 step: {one[column] for one in told.get(step, ()) if isinstance(one[column], str)}
                 for step in theirs
             }
-            for word in set().union(*words.values()):
+            for word in sorted(set().union(*words.values())):
                 if {step for step in theirs if word in words[step]} == apart:
                     return (
                         f"Your node is wrong on {output.name} each time that {path} on {other.name} is "

@@ -47,7 +47,7 @@ def hint(output: Output, run: Part, due: Part, seconds: Sequence[float] = ()) ->
     if not steps:
         return None
     came, asked = mine[steps[0]], theirs[steps[0]]
-    said, is_silent = _messages(output, run, steps[0])
+    said, is_silent = _messages(output, run, steps[0], len(came))
     if told := (
         _too_often(came, asked, said)
         or (_set_going(said, is_silent, run, seconds) if said and len(came) > len(asked) else None)
@@ -96,14 +96,18 @@ def _pairs(output: Output, came: Sequence[Any], asked: Sequence[Any]) -> Iterato
             return
 
 
-def _messages(output: Output, run: Part, step: int) -> tuple[list[Event], bool]:
-    """Return the messages of an output that came in a step, and whether the judge only let time pass in it."""
+def _messages(output: Output, run: Part, step: int, number: int) -> tuple[list[Event], bool]:
+    """Return the messages of an output that came in a step, and whether the judge only let time pass in it.
+
+    There are none if they are not as many as the step has. A look in real time notes all steps at its end, so that the
+    events do not show which message belongs to which step.
+    """
     noted = run.of("noted", output.name)
     place = next(n for n, one in enumerate(noted) if one.data["step"] == step)
     start = run.events.index(noted[place - 1]) if place else 0
     between = run.events[start : run.events.index(noted[place])]
     messages = [event for event in between if event.kind == "message" and event.name == output.name]
-    return messages, is_wait(noted[place])
+    return messages if len(messages) == number else [], is_wait(noted[place])
 
 
 def _too_often(came: Sequence[Any], asked: Sequence[Any], said: Sequence[Event]) -> Advice | None:
