@@ -1,4 +1,4 @@
-"""Repairs the installed wheels: CMake files, imports, callbacks of parameters, threads, action clients, Fast DDS.
+"""Repairs the installed wheels: CMake files, imports, parameters, executors, action clients, Fast DDS.
 
 * **CMake files.** The wheels were built in a container. What CMake exports for the Python part of a message package
   names that container's folders, ``/opt/python/cp311-cp311/include/python3.11`` and numpy's headers below it, and
@@ -20,6 +20,9 @@
   machine, a node with two threads answered a service after 0.2 s (median) to 2.5 s, and as fast as with one thread when
   the machine was busy. Upstream: https://github.com/ros2/rclpy/issues/1452. A callback is queued once, and the loop
   waits up to 1 ms for it.
+* **Signals.** An executor looks whether its context is valid, and then makes what it waits with. If the signal of
+  ``kill`` arrives in between, the program ends with a traceback, ``RCLError: … the given context is not valid``, and
+  not with the ``ExternalShutdownException`` that programs catch. The executor raises that exception here, too.
 * **Action clients.** The wheel that is called rclpy 7.1.6 contains the code of 7.1.5, whose ``ActionClient`` sends a
   request first and notes its number afterwards. If another thread spins, it may take the answer in between: it does
   not find the number, logs "Ignoring unexpected goal response", and the future is never done. The same happens to
@@ -50,7 +53,6 @@ _BUILD_PYTHON = r"/opt/python/cp\d+-cp\d+t?"
 _PYTHON_INCLUDE = re.compile(_BUILD_PYTHON + r"/include/python3\.\d+t?")
 _NUMPY_INCLUDE = re.compile(_BUILD_PYTHON + r"/lib/python3\.\d+t?/site-packages/numpy/_?core/include")
 _LEFT_OVER = re.compile(r"/opt/python/[^\s\";]+")
-_MARK = "# Changed by the set-up of the course (environment/wheel_repairs.py): "
 FOR_EVER = (2**63 - 1).to_bytes(8, "little")
 """``std::chrono::seconds::max()``."""
 YEARS_68 = (2**31 - 1).to_bytes(8, "little")
@@ -136,20 +138,28 @@ class SourceRepair:
     Attributes:
         file: The module, below site-packages.
         now: The text that is replaced.
-        later: The text that replaces it, as a template of ``re``: ``\g<name>`` is a group of ``now``.
+        change: What is so afterwards, in a sentence. It stands in the module, which shows that it is repaired.
+        later: The text that replaces it, as a template of ``re``: ``\g<name>`` is a group of ``now``, and ``{mark}`` is
+            the comment with ``change``.
     """
 
     file: str
     now: re.Pattern[str]
+    change: str
     later: str
+
+    def repaired(self, text: str) -> str:
+        """Return the module's text with the change, or as it is if it has it already or looks otherwise."""
+        mark = f"# Changed by the set-up of the course (environment/wheel_repairs.py): {self.change}"
+        return text if mark in text else self.now.sub(self.later.replace("{mark}", mark), text, count=1)
 
 
 SOURCE_REPAIRS = (
     SourceRepair(
         "rosidl_generator_py/__init__.py",
         re.compile(r"^try:\n    from \.generate_py_impl import generate_py\n.*\Z", re.MULTILINE | re.DOTALL),
-        _MARK
-        + """the generator is imported where it is used.
+        "the generator is imported where it is used.",
+        """{mark}
 def __getattr__(name):
     if name == 'generate_py':
         from .generate_py_impl import generate_py
@@ -160,8 +170,8 @@ def __getattr__(name):
     SourceRepair(
         "service_msgs/msg/_service_event_info.py",
         re.compile(r"^import numpy\b[^\n]*$", re.MULTILINE),
-        _MARK
-        + """numpy is imported where it is used.
+        "numpy is imported where it is used.",
+        """{mark}
 class _Numpy:
     def __getattr__(self, name):
         import numpy
@@ -173,8 +183,8 @@ numpy = _Numpy()""",
     SourceRepair(
         "rfc3987_syntax/__init__.py",
         re.compile(r"^from \.syntax_helpers import \*\s*\Z"),
-        _MARK
-        + """the grammars are compiled where one is used.
+        "the grammars are compiled where one is used.",
+        """{mark}
 def is_valid_syntax(term, value):
     from .syntax_helpers import is_valid_syntax
     return is_valid_syntax(term, value)
@@ -193,9 +203,8 @@ def __getattr__(name):
             r"^        modified_parameter_list = self\._call_pre_set_parameters_callback\(parameter_list\)$",
             re.M,
         ),
-        "        "
-        + _MARK
-        + """only rclpy is asked about use_sim_time.
+        "only rclpy is asked about use_sim_time.",
+        """        {mark}
         if [parameter.name for parameter in parameter_list] == ['use_sim_time']:
             own = (
                 self._pre_set_parameters_callbacks,
@@ -222,9 +231,8 @@ def __getattr__(name):
             r"^            self\._executor\.submit\(handler\)\n            self\._futures\.append\(handler\)$",
             re.MULTILINE,
         ),
-        "            "
-        + _MARK
-        + """a callback that waits for a thread is not queued again.
+        "a callback that waits for a thread is not queued again.",
+        """            {mark}
             from concurrent.futures import wait
             turn = getattr(handler, '_turn', None)
             if turn is None:
@@ -235,6 +243,20 @@ def __getattr__(name):
             wait([turn], timeout=0.001)""",
     ),
     SourceRepair(
+        "rclpy/executors.py",
+        re.compile(
+            r"^(?P<next>            try:\n                return next\(self\._cb_iter\)\n)", re.MULTILINE
+        ),
+        "a signal before the wait is a shutdown, not an error.",
+        r"\g<next>"
+        """            except _rclpy.RCLError:
+                {mark}
+                if self._context.ok():
+                    raise
+                raise ExternalShutdownException() from None
+""",
+    ),
+    SourceRepair(
         "rclpy/action/client.py",
         re.compile(
             # A client that has a lock already sends in a block of it: the second line is indented further.
@@ -242,9 +264,9 @@ def __getattr__(name):
             r"(?P<rest>.*^        sequence_number = self\._client_handle\.send_goal_request\(.*)\Z",
             re.MULTILINE | re.DOTALL,
         ),
+        "no answer is taken before the number of its request is noted.",
         r"\g<init>        self._sending_or_taking = threading.RLock()\n\g<rest>\n\n"
-        + _MARK
-        + """no answer is taken before the number of its request is noted.
+        """{mark}
 import functools
 
 
@@ -266,18 +288,18 @@ for _name in ('send_goal_async', '_cancel_goal_async', '_get_result_async', 'tak
 
 
 def repair_sources(site_packages: Path) -> list[Path]:
-    """Change the existing modules that are not changed yet, each in one step, and return them."""
+    """Make the changes that existing modules do not have yet, each in one step, and return these modules."""
     changed = []
     for module in SOURCE_REPAIRS:
         path = site_packages / module.file
         if not path.is_file():
             continue
         text = path.read_text(encoding="utf-8")
-        new = module.now.sub(module.later, text, count=1)
-        if _MARK not in text and new != text:
+        new = module.repaired(text)
+        if new != text:
             _replace_content(path, new.encode())
             changed.append(path)
-    return changed
+    return list(dict.fromkeys(changed))
 
 
 def repaired_fast_dds(library: bytes) -> bytes:
