@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from autograder.authoring.mutants import engine
 from autograder.authoring.mutants.code import Code
 from autograder.authoring.mutants.equivalents import equivalent
+from tests.mutation.given_code import given_lines
 from tests.mutation.line_operators import LINES
 
 if TYPE_CHECKING:
@@ -79,14 +80,15 @@ class Mutant:
 def mutants(subject: Subject) -> list[Mutant]:
     """All first-order mutants of an answer, in the order of its text; no two of them mean the same.
 
-    Those that a rule shows to be equivalent are left out.
+    Those that a rule shows to be equivalent are left out, and those of what the notebook has before the task.
     """
     means = partial(_meaning, subject)
     code = Code(subject.text) if _is_python(subject) else None
+    given = given_lines(subject.exercise, subject.text) if code else set()
     return [
         Mutant(f"{subject.name}:{one.key}", subject, one.operator, one.line, one.text)
         for one in engine.mutants(subject.text, list(_changes(subject)), means)
-        if code is None or not equivalent(code, one)
+        if code is None or not (one.line in given or equivalent(code, one))
     ]
 
 

@@ -89,7 +89,8 @@ class SameAsSolution:
         qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
             that does not match gets or tells nothing.
         every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
-            one message for each input; True for all of ``tells``.
+            one message for each input; True for all of ``tells``. While a goal that the judge cancels is at work, the
+            last one is compared.
         rates: The topics for which the task asks for a period, with this period in seconds. A node that publishes more
             often or less often fails; it may be silent for some time, or publish once more at an input. So only
             intervals without an input show a period, and ``gives`` needs three periods in a row without one. On
@@ -313,8 +314,11 @@ class SameAsSolution:
             until = following.first if following else None
             return step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
         values = output.values(self._events(bench, turn, following))
-        if output.name not in self._every or (self._late_after and turn.number == 0):
-            # A publisher may keep more than its last message for late subscribers.
+        # A publisher may keep more than its last message for late subscribers.
+        is_late = self._late_after and turn.number == 0
+        # How many messages are sent before a cancel depends on the moment at which it comes.
+        is_cut_off = isinstance(step, Goal) and step.cancel_after is not None
+        if output.name not in self._every or is_late or is_cut_off:
             values = values[-1:]
         if isinstance(step, To) and step.stands and bench.before:
             values = noted_before(bench.before.part(seen.name), output.name, turn.number, values)

@@ -24,10 +24,11 @@ EXERCISE = SameAsSolution(
         "/dock": ("status", "feedback.distance", "result.arrived"),
         "/cmd_vel": ("linear.x", "angular.z"),
     },
+    every=("/cmd_vel",),
     roles=("action_server", "publisher", "subscription"),
 ).exercise(
     text={
-        "as long as `left` is more than 0 and no cancel is requested": "dock",
+        "as long as `left` is more than 0 and no cancel is requested": "dock cmd_vel",
         "Stop the robot.": "cmd_vel",
         "Say how the goal ended: canceled, or succeeded.": "dock",
         "Return the result as in `Dock`": "dock",
