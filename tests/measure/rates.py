@@ -183,59 +183,60 @@ def _key(verdict: Verdict) -> str:
 
 
 def markdown(rates: Rates) -> str:
-    """The figures as a piece of Markdown."""
+    """The figures as a piece of Markdown: the rates, how each part was measured, what was not as expected."""
     on = rates.machine
-    lines = [
-        f"Measured on {on.cores} cores with {on.memory_gib:g} GiB, {on.system}, CPython {on.python}, "
-        "by `python -m tests.measure rates`.",
-        "",
-        "| what | rate | how it was measured |",
-        "| --- | --- | --- |",
-    ]
+    rows = ["| what | part | rate |", "| --- | --- | --- |"]
+    ways: list[str] = []
     details: list[str] = []
     if rates.bank:
         how, bank = rates.bank
-        lines += [
-            _row("right answers of the bank that are accepted", _of(bank.accepted, bank.right), how),
-            _row("wrong answers of the bank that are rejected", _of(bank.rejected, bank.wrong), how),
-            _row("wrong answers with a diagnosis that is right", _of(bank.diagnosed, bank.wrong), how),
-            _row("wrong answers with the most useful diagnosis", _of(bank.first, bank.wrong), how),
+        rows += [
+            _row("right answers that are accepted", "bank", _of(bank.accepted, bank.right)),
+            _row("wrong answers that are rejected", "bank", _of(bank.rejected, bank.wrong)),
+            _row("wrong answers with a diagnosis that is right", "bank", _of(bank.diagnosed, bank.wrong)),
+            _row("wrong answers with the most useful diagnosis", "bank", _of(bank.first, bank.wrong)),
         ]
+        ways.append(_way("bank", how))
         details += [f"- bank: {objection}" for objection in bank.objections]
     if rates.mutants:
         how, found = rates.mutants
         total = found.total
         left = total.killed + total.survived
         judged = left + total.equivalent
-        sample = replace(how, command=f"{how.command}: {judged + total.not_checked} of {found.made}")
-        lines += [
-            _row(
-                "mutants of right answers that are rejected, as they come", _of(total.killed, judged), sample
-            ),
-            _row("without those that were read and do what the task asks", _of(total.killed, left), how),
-            _row("rejected mutants with a specific diagnosis", _of(total.told, total.killed), how),
+        rows += [
+            _row("mutants of right answers that are rejected", "mutants", _of(total.killed, judged)),
+            _row("the same, without those that do what the task asks", "mutants", _of(total.killed, left)),
+            _row("rejected mutants with a specific diagnosis", "mutants", _of(total.told, total.killed)),
         ]
-        details += [f"- mutant that survived: `{survivor.id}`" for survivor in found.survivors]
-    for part, what in (
+        ways.append(_way("mutants", how, f"{judged + total.not_checked} of {found.made}"))
+        if found.survivors:
+            details.append(f"- mutants that survived: {', '.join(f'`{one.id}`' for one in found.survivors)}")
+    for name, part, what in (
+        ("soak", rates.soak, "answers with the same points and diagnosis each time, under load"),
         (
-            rates.soak,
-            "answers judged more than once under load, with the same points and diagnosis each time",
+            "steady_class",
+            rates.steady_class,
+            "verdicts that stay the same when a class is graded again and again",
         ),
-        (rates.steady_class, "verdicts that stay the same when a class is graded again and again"),
     ):
         if part:
             how, ends = part
-            same = _of(ends.repeated - len(ends.changed), ends.repeated)
-            beside = f"{how.command}: {ends.judgements} judgements, {ends.how}"
-            lines.append(_row(what, same, replace(how, command=beside)))
-            details += [f"- changed: {name}: {in_words(counts)}" for name, counts in ends.changed.items()]
-            details += [f"- not as expected: {name}: {why}" for name, why in ends.unexpected.items()]
-    return "\n".join([*lines, *(["", *details] if details else [])]) + "\n"
+            rows.append(_row(what, name, _of(ends.repeated - len(ends.changed), ends.repeated)))
+            ways.append(_way(name, how, f"{ends.judgements} judgements, {ends.how}"))
+            details += [f"- changed: {answer}: {in_words(counts)}" for answer, counts in ends.changed.items()]
+            details += [f"- not as expected: {answer}: {why}" for answer, why in ends.unexpected.items()]
+    on_what = f"Measured on {on.cores} cores with {on.memory_gib:g} GiB, {on.system}, CPython {on.python}:"
+    blocks = [rows, [on_what], ways, *([["What was not as expected:"], details] if details else [])]
+    return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
 
 
-def _row(what: str, rate: str, how: Measured) -> str:
-    command, colon, more = how.command.partition(": ")
-    return f"| {what} | {rate} | `{command}`{colon}{more}; {how.form} form, {how.when}, {how.minutes:.0f} minutes |"
+def _row(what: str, part: str, rate: str) -> str:
+    return f"| {what} | `{part}` | {rate} |"
+
+
+def _way(part: str, how: Measured, more: str = "") -> str:
+    sized = f"{more}; " if more else ""
+    return f"- `{part}`: `{how.command}`: {sized}{how.form} form, {how.when}, {how.minutes:.0f} minutes"
 
 
 def _of(some: int, all_: int) -> str:

@@ -63,12 +63,13 @@ def test_what_changed_and_what_survived_is_named() -> None:
         soak=(TODAY, ends.result(2.0, "8 at a time")),
     )
     text = rates.markdown(found)
-    assert "| right answers of the bank that are accepted | 9 of 10 (90.0%) |" in text
-    assert "| mutants of right answers that are rejected, as they come | 9 of 12 (75.0%) |" in text
-    assert "| without those that were read and do what the task asks | 9 of 10 (90.0%) |" in text
-    assert "12 of 99; short form" in text
-    assert "| 1 of 2 (50.0%) | `python -m tests.made_up`: 4 judgements, 8 at a time;" in text
-    assert "- mutant that survived: `x/y:z:1`" in text
+    assert "| right answers that are accepted | `bank` | 9 of 10 (90.0%) |" in text
+    assert "| mutants of right answers that are rejected | `mutants` | 9 of 12 (75.0%) |" in text
+    assert "| the same, without those that do what the task asks | `mutants` | 9 of 10 (90.0%) |" in text
+    assert "- `mutants`: `python -m tests.made_up`: 12 of 99; short form, 2026-01-01, 2 minutes" in text
+    assert "under load | `soak` | 1 of 2 (50.0%) |" in text
+    assert "- `soak`: `python -m tests.made_up`: 4 judgements, 8 at a time; short form" in text
+    assert "- mutants that survived: `x/y:z:1`" in text
     assert "- changed: one: 1 times failed, 0 of 10; 1 times failed, 4 of 10" in text
 
 
