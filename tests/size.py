@@ -2,8 +2,9 @@
 
 ``tests/size_ceilings.toml`` contains the ceilings. ``python -m tests.size`` lowers them to the present sizes, and
 never raises one; only if the file contains no ceiling, it sets all anew. ``python -m tests.size --since COMMIT`` lists
-the parts and files that have grown or shrunk, and changes nothing. If a change is worth more lines, say for whom
-and until when in docs/decisions.md, and name that entry in a table ``[[raised]]`` of the ceilings file::
+the parts and files that have grown or shrunk, and changes nothing. If a change is worth more lines, say in
+docs/decisions.md for whom, and what would end it if that is known. Name that entry in a table ``[[raised]]`` of the
+ceilings file::
 
     [[raised]]
     part = "autograder/kit"

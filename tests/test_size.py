@@ -44,7 +44,7 @@ def test_no_part_is_larger_than_its_ceiling() -> None:
 def test_no_ceiling_is_above_an_earlier_one() -> None:
     """Compare with the versions in Git since the ceilings were set anew, which the key ``since`` dates."""
     now = tomllib.loads(CEILINGS.read_text())
-    assert f"| {now['since']}: ceilings set" in DECISIONS.read_text(), (
+    assert f"- {now['since']}: ceilings set" in DECISIONS.read_text(), (
         "docs/decisions.md has to say why they were set anew"
     )
 
