@@ -222,7 +222,7 @@ def markdown(rates: Rates) -> str:
         if part:
             how, ends = part
             rows.append(_row(what, name, _of(ends.repeated - len(ends.changed), ends.repeated)))
-            ways.append(_way(name, how, f"{ends.judgements} judgements, {ends.how}"))
+            ways.append(_way(name, how, f"{ends.judgements} verdicts, {ends.how}"))
             details += [f"- changed: {answer}: {in_words(counts)}" for answer, counts in ends.changed.items()]
             details += [f"- not as expected: {answer}: {why}" for answer, why in ends.unexpected.items()]
     on_what = f"Measured on {on.cores} cores with {on.memory_gib:g} GiB, {on.system}, CPython {on.python}:"

@@ -68,7 +68,7 @@ def test_what_changed_and_what_survived_is_named() -> None:
     assert "| the same, without those that do what the task asks | `mutants` | 9 of 10 (90.0%) |" in text
     assert "- `mutants`: `python -m tests.made_up`: 12 of 99; short form, 2026-01-01, 2 minutes" in text
     assert "under load | `soak` | 1 of 2 (50.0%) |" in text
-    assert "- `soak`: `python -m tests.made_up`: 4 judgements, 8 at a time; short form" in text
+    assert "- `soak`: `python -m tests.made_up`: 4 verdicts, 8 at a time; short form" in text
     assert "- mutants that survived: `x/y:z:1`" in text
     assert "- changed: one: 1 times failed, 0 of 10; 1 times failed, 4 of 10" in text
 
