@@ -141,6 +141,7 @@ class Verdict:
         title: The title of the exercise that students read.
         state: Whether the check passed, failed, or could not be made.
         score: The points earned; 0 unless the subject was checked.
+        max_score: The points available.
         criteria: The criteria in the order of the exercise; empty if nothing could be checked.
         diagnosis: The most helpful diagnosis; None if the check passed.
         remarks: Remarks that cost no points.
