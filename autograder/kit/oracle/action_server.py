@@ -30,6 +30,9 @@ Seen = TypeVar("Seen", bound=GoalsSeen)
 class SendsGoals(Generic[Seen]):
     """The recipe for an action server. Its view is the author's :class:`GoalsSeen`.
 
+    The recipe recognizes the mistakes ``two_servers``, ``result_missing``, ``action_name``, ``message_type``,
+    ``cancel_not_accepted``, ``older_goal_ended``, ``goals_mixed_up``, ``goal_rejected``, ``done_at_once``.
+
     Args:
         scenario: The function that runs all parts of the exercise on a bench, usually with a
             :class:`autograder.kit.oracle.goal_sender.GoalSender`.

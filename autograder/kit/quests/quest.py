@@ -65,6 +65,10 @@ _WORDS = card_words(__file__)
 class Quest:
     """The recipe for a quest. Criteria and mistakes get all runs as :class:`Search`, by the names of the robots.
 
+    The recipe recognizes the mistakes ``looked_too_early``, ``wrong_node``, ``not_returned``, ``looked_once``,
+    ``invented_answer``, ``waits_forever``, ``silent_end``, ``patience_not_kept``, ``gave_up``, ``no_answer``,
+    ``never_ended``.
+
     Args:
         draws: Draws the robots by name, in the order in which the subject meets them. The names are the same each time.
         noun: The word for what there may not be, such as ``"service"``.

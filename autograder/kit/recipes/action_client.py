@@ -33,6 +33,9 @@ def _not_by_refusal(mistake: Mistake) -> Mistake:
 class ActionClient(SeenAsItIs):
     """The recipe for an action client. Its criteria get the whole evidence, because several runs have a goal.
 
+    The recipe recognizes the mistakes ``called_too_early``, ``action_name``, ``message_type``, ``main_guard``,
+    ``nothing_on_the_graph``, ``ended_too_early``, and the mistakes that you give it.
+
     Args:
         scenario: The function that runs all parts of the exercise on a bench. The action's name and type are
             ``bench.reference.only("action_client")``.

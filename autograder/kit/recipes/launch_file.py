@@ -227,6 +227,8 @@ class Launched:
 class LaunchFile:
     """The recipe for a launch file that remaps a topic of two programs.
 
+    The recipe recognizes the mistakes ``no_workspace``, ``bad_package``, ``build_failed``, ``launch_error``.
+
     Args:
         package: The package of the two programs.
         old_name: The topic's name in the programs' code.

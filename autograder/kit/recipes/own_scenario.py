@@ -152,6 +152,10 @@ def _all_there(bench: Bench, ends: Sequence[tuple[str, str]]) -> bool:
 class OwnScenario:
     """The recipe for a subject with endpoints of given roles. A view is the record of the subject's first part.
 
+    By its roles, the recipe recognizes the mistakes ``topic_name``, ``service_name``, ``action_name``,
+    ``message_type``, ``qos_mismatch``, ``never_published``, ``two_servers``, ``result_missing``,
+    ``cancel_not_accepted``, ``called_too_early``, ``await_in_same_group``.
+
     Args:
         scenario: The scenario, for example one made by :func:`once_met`. If you write it yourself,
             ``bench.reference.only(role)`` is the name and type of an endpoint; if a role has several endpoints,

@@ -97,6 +97,9 @@ def _words(part: Part) -> list[str]:
 class Program:
     """The recipe for a program of a package.
 
+    The recipe recognizes the mistakes ``no_workspace``, ``bad_package``, ``build_failed``, ``package_name``,
+    ``entry_point``, ``main_guard``, ``nothing_on_the_graph``.
+
     Args:
         package: The name of the package in the task.
         program: The name of the program in the task, as in ``ros2 run PACKAGE PROGRAM``.

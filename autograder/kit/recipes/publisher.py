@@ -54,6 +54,11 @@ passed within a moment, so this shows whether the program ends.
 class Publisher:
     """The recipe for a publisher. Its criteria and mistakes get objects of the type :class:`PublisherSeen`.
 
+    The recipe recognizes the mistakes ``topic_name``, ``message_type``, ``qos_mismatch``,
+    ``published_before_discovery``, ``never_published``, ``wrong_rate``, ``stopped_publishing``; with
+    :meth:`says_text` also ``field_typo``, ``wrong_text``; with :meth:`counts` also ``counter_stuck``,
+    ``counter_start``, ``counter_step``.
+
     Args:
         messages: The number of messages to wait for at first, in simulated time.
         long_run: The number of messages to wait for in simulated time if they take little time, or if something looks

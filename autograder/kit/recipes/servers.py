@@ -115,6 +115,9 @@ def _unanswered(request: Fields) -> str:
 class Asks:
     """The recipe for a service server.
 
+    The recipe recognizes the mistakes ``two_servers``, ``service_name``, ``message_type``,
+    ``callback_returned_none``.
+
     Args:
         singly: Draws the requests for the calls that are made one after the other.
         ordinary: Draws one request; it is called for each of the simultaneous calls and for the last one.

@@ -47,6 +47,11 @@ _WORDS = card_words(__file__)
 class Calls:
     """The recipe for a client that lets a service add numbers.
 
+    The recipe recognizes the mistakes ``service_name``, ``message_type``, ``called_too_early``, ``usage_message``,
+    ``waits_forever``, ``await_in_same_group``, ``too_many_calls``, ``wrong_arguments``, ``no_call``,
+    ``wrong_sum_reported``, ``sum_not_reported``, ``zero_taken_for_failure``, ``not_returned``,
+    ``gave_up_too_early``, ``silent_end``, ``patience_not_kept``.
+
     Args:
         calls: The number of calls of a client that has finished its work.
             The first call adds the first two numbers, each later one the answer before and the next number.

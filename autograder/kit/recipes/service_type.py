@@ -45,6 +45,9 @@ Fields = list[tuple[str, str]]
 class ServiceType(SeenAsItIs):
     """The recipe for a package that defines a service type. Its views are the whole evidence.
 
+    The recipe recognizes the mistakes ``no_workspace``, ``bad_package``, ``build_failed``, ``three_dashes``,
+    ``interface_fields``, ``interface_in_python_package``, ``member_of_group``, ``interface_not_listed``.
+
     Args:
         file: The name of the file in the task, such as ``"AddTwoInts.srv"``.
         package: The package's name in advice; the judge accepts any name.

@@ -61,6 +61,9 @@ follows simulated time, these are simulated seconds.
 class Subscriber:
     """The recipe for a subscriber that must report each text that it receives, with any words around it.
 
+    The recipe recognizes the mistakes ``topic_name``, ``message_type``, ``qos_mismatch``, ``wrong_text``,
+    ``invented_text``, ``callback_too_slow``, ``not_logged``, ``everything_twice``, ``never_ended``.
+
     Args:
         pace: The time in seconds between two successive texts.
         paced_by: The node that sends at this pace, in words for the student.
