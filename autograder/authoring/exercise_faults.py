@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _OUTPUTS = ("publisher", "service", "action_server")
 """The roles of endpoints through which a node tells something. The others only let it know."""
 _MISTAKES_PAGE = "docs/mistakes.md"
-"""The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
+"""The page that explains each diagnosis to students. The heading of a paragraph has the keys that it explains."""
 
 
 def still_to_do(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
@@ -109,7 +109,8 @@ def _without(recorded: Reference, gone: str) -> Evidence:
 def _of_mistakes(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     page = course.root() / _MISTAKES_PAGE
     if page.is_file():
-        explained = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
+        headings = re.findall(r"^### .+$", page.read_text(encoding="utf-8"), re.MULTILINE)
+        explained = set(re.findall(r"`(\w+)`", " ".join(headings)))
         used = {mistake.key for mistake in exercise.mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
         # A recorded wrong answer says on the card itself what it is, and what a mutant does has keys of its own.
