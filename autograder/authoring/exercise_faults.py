@@ -109,13 +109,12 @@ def _without(recorded: Reference, gone: str) -> Evidence:
 def _of_mistakes(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     page = course.root() / _MISTAKES_PAGE
     if page.is_file():
-        headings = re.findall(r"^### .+$", page.read_text(encoding="utf-8"), re.MULTILINE)
-        explained = set(re.findall(r"`(\w+)`", " ".join(headings)))
+        headings = " ".join(re.findall(r"^### .+$", page.read_text(encoding="utf-8"), re.MULTILINE))
         used = {mistake.key for mistake in exercise.mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
         # A recorded wrong answer says on the card itself what it is, and what a mutant does has keys of its own.
         used -= {"variant", "mutant"} | {key for one in listed if one.advice for key in one.diagnoses}
-        for key in sorted(used - explained):
+        for key in sorted(used - set(re.findall(r"`(\w+)`", headings))):
             yield author_text("no_paragraph", page=_MISTAKES_PAGE, key=key)
 
 
