@@ -36,10 +36,11 @@ def test_the_page_names_every_recipe_and_is_short() -> None:
     assert len(PAGE.splitlines()) <= 140
 
 
-def test_the_page_begins_with_a_whole_exercise_that_is_tried() -> None:
-    example = EXAMPLES / "solutions/recipes/relay/converter.py"
-    shown = PAGE.partition("```python\n")[2].partition("```\n")[0]
-    assert shown == example.read_text(encoding="utf-8").replace("relay.converter", EXERCISE)
+def test_the_page_shows_the_exercise_that_its_command_writes() -> None:
+    (making, *_) = COMMAND.findall(PAGE)
+    example = EXAMPLES / "solutions/recipes" / making.split()[-1] / f"{EXERCISE.partition('.')[2]}.py"
+    assert example.is_file()
+    assert f"(../{example.relative_to(ROOT)})" in PAGE
 
 
 @pytest.mark.ros
