@@ -20,6 +20,7 @@ from autograder.kit.reported_texts import AT_PACE
 from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.verdict import not_checked
 from course_runtime.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
+from tests.cases import named_cases
 from tests.measure.bank import answer_named
 
 TALKER = answers_folder("lab_1_2.talker")
@@ -53,20 +54,7 @@ def test_check_alone_lists_the_exercises() -> None:
     assert "lab_1_2.talker" in done.stdout
 
 
-@pytest.mark.parametrize(
-    ("words", "hint"),
-    [
-        pytest.param(
-            ("check", "lab_1_2.talkr", "--", "true"), "did you mean lab_1_2.talker", id="unknown exercise"
-        ),
-        pytest.param(("check", "lab_1_2.talker"), "two dashes", id="no command"),
-        pytest.param(
-            ("check", "lab_1_2.talker", "--", "no-such-program"), "no-such-program", id="no such program"
-        ),
-        pytest.param(("check", "lab_1_2.talker", "--", "/etc/passwd"), "/etc/passwd", id="not executable"),
-        pytest.param(("record", "lab_9"), "did you mean", id="record something unknown"),
-    ],
-)
+@pytest.mark.parametrize(("words", "hint"), named_cases(__file__, "bad_input_is_named_and_ends_with_2"))
 def test_bad_input_is_named_and_ends_with_2(words: tuple[str, ...], hint: str) -> None:
     done = _run(*words)
     assert done.returncode == 2

@@ -14,6 +14,7 @@ from urllib.parse import unquote
 import pytest
 
 from autograder.masters.master_files import chapter_path, masters
+from tests.cases import cases
 
 ROOT = Path(__file__).resolve().parents[1]
 MASTERS = masters(ROOT)
@@ -204,17 +205,7 @@ def test_a_folder_of_this_machine_is_found(folder: str) -> None:
     assert not HOMES.search(f"see my/{folder}/course/x.py and /home/you/x".encode())
 
 
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    [
-        ("[a](missing.md)", True),
-        ("[a](README.md#where-to-go-next)", False),
-        ("[a](README.md#nowhere)", True),
-        ("[a](../outside.md)", True),
-        ("[a](http://example.org)", True),
-        ("[a](https://example.org)", False),
-    ],
-)
+@pytest.mark.parametrize(("text", "wrong"), cases(__file__, "a_broken_link_is_found"))
 def test_a_broken_link_is_found(text: str, wrong: bool) -> None:
     found = LINK.search(text)
     assert found is not None

@@ -6,28 +6,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
 from tests.english import faults_in, prose_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-@pytest.mark.parametrize(
-    ("faulty", "plain"),
-    [
-        ("None where the name says none", "None if the name contains none"),
-        ("The channel that nobody reads.", "The channel that no process reads."),
-        ("The solution is no Python.", "The solution is not valid Python."),
-        ("Who ends at once has not given up.", "A client that ends at once has not given up."),
-        ("What the judge saw.", "The events that the judge saw."),
-        ("Begin anew, also where it failed.", "Begin again, even if it failed."),
-        ("It says something else than its name.", "The content of the file differs from its name."),
-        ("A box that is there.", "A running sandbox."),
-        ("Its outcome.", "The outcome of this file."),
-        ("Recognize the colour.", "Recognize the color."),
-        ("After a block of code: writes the table.", "After a block of code: `export` writes the table."),
-    ],
-)
+@pytest.mark.parametrize(("faulty", "plain"), cases(__file__, "a_fault_is_found_and_its_plain_form_is_not"))
 def test_a_fault_is_found_and_its_plain_form_is_not(faulty: str, plain: str) -> None:
     assert faults_in(faulty)
     assert not faults_in(plain)

@@ -127,13 +127,7 @@ def test_the_texts_of_a_row_can_be_filled_in(row: KnownError) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "says"),
-    [
-        ("rqt_graph", "`rqt_graph` is a program with a window of its own"),
-        ("roscore", "`roscore` is a command of ROS 1"),
-        ("rosrun a b", "The commands of ROS 2 are `ros2 run`"),
-        ("no_such_command", ""),
-    ],
+    ("command", "says"), cases(__file__, "a_command_that_a_cell_of_bash_does_not_find_is_explained")
 )
 def test_a_command_that_a_cell_of_bash_does_not_find_is_explained(command: str, says: str) -> None:
     shell = subprocess.run(

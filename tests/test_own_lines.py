@@ -19,6 +19,7 @@ from autograder.own_lines import (
     own_lines,
 )
 from course_runtime.python_child import python_child
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,38 +95,13 @@ LOOPS = """def dock(self, goal):
 """
 
 
-@pytest.mark.parametrize(
-    ("line", "loop"),
-    [
-        (3, "3: while left > 0.0:"),
-        (4, "3: while left > 0.0:"),
-        (5, "2: for scan in goal.scans:"),
-        (6, ""),
-    ],
-)
+@pytest.mark.parametrize(("line", "loop"), cases(__file__, "the_innermost_loop_around_a_line_is_quoted"))
 def test_the_innermost_loop_around_a_line_is_quoted(line: int, loop: str) -> None:
     assert loop_around(LOOPS, line) == loop
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "endless"),
-    [
-        ("", "", True),
-        ("left > 0.0", "left > 0.0 and n < 3", True),
-        ("pass", "left -= 0.25", False),
-        ("pass", "break", False),
-        ("pass", "raise StopIteration", False),
-        ("pass", "yield left", False),
-        ("left > 0.0", "left", True),
-        ("left > 0.0", "not -left % 2 or left is None", True),
-        ("left > 0.0", "self.left > 0.0", False),
-        ("left > 0.0", "left == goal", False),
-        ("left > 0.0", "left > n and left != goal", False),
-        ("left > 0.0", "left > left()", False),
-        ("left > 0.0", "left[0]", False),
-        ("left > 0.0", "total > 0.0", False),
-        ("        n = 1", "        nonlocal left", False),
-    ],
+    ("old", "new", "endless"), cases(__file__, "a_loop_is_endless_only_if_no_line_ends_it")
 )
 def test_a_loop_is_endless_only_if_no_line_ends_it(old: str, new: str, endless: bool) -> None:
     text = "def dock():\n    def drive(left, goal):\n        n = 1\n        while left > 0.0:\n            pass\n"

@@ -117,18 +117,7 @@ def test_parts_are_folders() -> None:
     assert [part_of(Path(path)) for path in paths] == ["autograder/grading", "autograder", "solutions"]
 
 
-@pytest.mark.parametrize(
-    ("logic", "raised", "said"),
-    [
-        (100, {}, ""),
-        (101, {}, "has 101 logic lines, and 100 are allowed"),
-        (91, {}, ""),
-        (89, {}, "lower its ceiling of 100"),
-        (104, {"logic": 5, "entry": "2026-12-01: more"}, ""),
-        (104, {"logic": 5, "entry": "2026-12-02: more"}, "is not in docs/decisions.md"),
-        (104, {"logic": 5, "entry": "more"}, "is not in docs/decisions.md"),
-    ],
-)
+@pytest.mark.parametrize(("logic", "raised", "said"), cases(__file__, "a_ceiling_only_falls"))
 def test_a_ceiling_only_falls(logic: int, raised: dict[str, Any], said: str) -> None:
     more = [{"part": "kit", **raised}] if raised else []
     data = {"since": "", "ceilings": {"kit": {"logic": 100, "public": 1}}, "raised": more}

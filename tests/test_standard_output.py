@@ -16,6 +16,7 @@ from autograder.cli import cli
 from autograder.judge import command_check
 from autograder.standard_output import short_lines, split_lines, stray_lines_on_stderr
 from autograder.verdict import State, Verdict, to_json
+from tests.cases import cases
 
 LOG_LINE = b"2026-11-20 14:02:11.123 [RTPS_TRANSPORT_SHM Error] Failed to create segment\n"
 """A line as Fast DDS prints it."""
@@ -117,16 +118,7 @@ def test_the_end_of_a_line_that_was_cut_is_seen_in_two_pieces() -> None:
     assert list(short_lines(stream, 5)) == [b"12345", b"78\r", b"9\n"]
 
 
-@pytest.mark.parametrize(
-    ("text", "lines"),
-    [
-        ("a\r\nb\rc\n", ["a", "b", "c", ""]),
-        ("waiting\r", ["waiting\r"]),
-        ("\rwaiting 1\rwaiting 2", ["", "waiting 1", "waiting 2"]),
-        ("a\n\nb", ["a", "", "b"]),
-        ("", [""]),
-    ],
-)
-def test_a_carriage_return_ends_a_line_too(text: str, lines: list[str]) -> None:
-    assert split_lines(text) == lines
+@pytest.mark.parametrize(("text", "lines"), cases(__file__, "a_carriage_return_ends_a_line_too"))
+def test_a_carriage_return_ends_a_line_too(text: str, lines: tuple[str, ...]) -> None:
+    assert split_lines(text) == list(lines)
     assert split_lines(text.encode()) == [line.encode() for line in lines]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.authoring.answer_tables import BadTable, answer_settings, listed_answers
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,18 +60,7 @@ def test_a_base_without_a_comment_loses_nothing(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        pytest.param(
-            '"usual.py"',
-            '"usul.py"',
-            "right has no file usul.py, which is the entry's base; did you mean usual.py",
-            id="base",
-        ),
-        pytest.param(
-            "-i = 0", "-i = 5", "does not fit usual.py: 'i = 5' is not a line of the base", id="line"
-        ),
-    ],
+    ("old", "new", "words"), named_cases(__file__, "an_edit_that_does_not_fit_is_named_when_it_is_used")
 )
 def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
     folder: Path, old: str, new: str, words: str

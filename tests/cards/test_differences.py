@@ -6,23 +6,14 @@ import pytest
 
 from autograder.cards.card_content import difference, marked
 from autograder.verdict import CriterionResult
+from tests.cases import cases
 
 
 def between(expected: str, seen: str, *, passed: bool = False) -> str:
     return marked(difference(CriterionResult("text", "Text", 1.0, passed, expected, seen)))
 
 
-@pytest.mark.parametrize(
-    ("seen", "shown"),
-    [
-        ("“Hello world 0”", "Hello[,] world[!] 0"),
-        ("“Hello, world! 0 ”, and more", "Hello, world! 0{␣}"),
-        ("“Hello, World! 0”", "Hello, [w]{W}orld! 0"),
-        ("“Hello, world! 0”", ""),
-        ("“I heard nothing of the kind”", ""),
-        ("no message arrived", ""),
-    ],
-)
+@pytest.mark.parametrize(("seen", "shown"), cases(__file__, "shows_what_is_missing_and_what_is_too_much"))
 def test_shows_what_is_missing_and_what_is_too_much(seen: str, shown: str) -> None:
     assert between("“Hello, world! 0”, “Hello, world! 1”, …", seen) == shown
 

@@ -15,6 +15,7 @@ import pytest
 from autograder.cards.html_rendering import card_html
 from autograder.cards.text_rendering import card_text
 from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, not_checked
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -169,14 +170,7 @@ def test_every_criterion_is_a_row_with_its_words(verdict: Verdict) -> None:
         assert bool(highlighted) is not criterion.passed
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("talker_passed", "Passed · all 4 criteria hold 10 of 10 points"),
-        ("talker_wrong_topic", "Not yet · 3 of 4 criteria hold 7.5 of 10 points"),
-        ("not_checked", "Could not be checked no points counted (of 10)"),
-    ],
-)
+@pytest.mark.parametrize(("name", "said"), cases(__file__, "the_head_says_how_it_stands"))
 def test_the_head_says_how_it_stands(name: str, said: str, load: Callable[[str], Verdict]) -> None:
     tree = Tree(card_html(load(name))).root
     head = tree.all(css_class="agc-head")[0]
@@ -340,22 +334,15 @@ def test_the_traceback_is_folded_under_its_last_line(load: Callable[[str], Verdi
     assert html.unescape(folded.all("pre")[0].text()).rstrip() == verdict.detail.rstrip()
 
 
-@pytest.mark.parametrize(
-    ("advice", "codes"),
-    [
-        ("End it with `return result` or `raise`.", ["return result", "raise"]),
-        ("A lone ` is a character.", []),
-        ("`<script>` is text", ["<script>"]),
-    ],
-)
+@pytest.mark.parametrize(("advice", "codes"), cases(__file__, "code_in_the_advice_is_set_as_code"))
 def test_code_in_the_advice_is_set_as_code(
-    load: Callable[[str], Verdict], advice: str, codes: list[str]
+    load: Callable[[str], Verdict], advice: str, codes: tuple[str, ...]
 ) -> None:
     verdict = load("talker_wrong_topic")
     assert verdict.diagnosis is not None
     card = Tree(card_html(replace(verdict, diagnosis=replace(verdict.diagnosis, next_step=advice)))).root
     (next_step,) = card.all(css_class="agc-next")
-    assert [code.text() for code in next_step.all("code")] == codes
+    assert [code.text() for code in next_step.all("code")] == list(codes)
     assert ("`" in next_step.text()) == (not codes)
 
 

@@ -93,19 +93,7 @@ def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
     assert course.ran() == ["autograder [check]"]
 
 
-@pytest.mark.parametrize(
-    "changed",
-    [
-        "pyproject.toml",
-        "environment/bootstrap.py",
-        "course_runtime/place.py",
-        "course_runtime/ros2_command/install.py",
-        "environment/requirements/course.lock",
-        "environment/interfaces/own_interfaces/srv/A.srv",
-        "solutions/02_power/interfaces/power_interfaces/srv/B.srv",
-        "exercises/02_power/interfaces/power_interfaces/msg/C.msg",
-    ],
-)
+@pytest.mark.parametrize("changed", cases(__file__, "a_change_of_what_it_is_made_from_sets_up_again"))
 def test_a_change_of_what_it_is_made_from_sets_up_again(course: Course, changed: str) -> None:
     course.run("check")
     course.ran()

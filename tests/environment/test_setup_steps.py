@@ -18,6 +18,7 @@ from course_runtime.ros_flavour import Ros
 from environment import bootstrap
 from environment.setup_steps import Setup, SetupError
 from environment.steps import Step, digest
+from tests.cases import cases
 from tests.copies import copied
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -328,16 +329,7 @@ def test_a_disk_without_room_is_said_before_anything_is_installed(
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("OSError: [Errno 28] No space left on device", "disk is full"),
-        (
-            "ERROR: THESE PACKAGES DO NOT MATCH THE HASHES FROM THE REQUIREMENTS FILE",
-            "not the one that is locked",
-        ),
-        ("ERROR: No matching distribution found for ros-rcl==9.2.8", "is there a network"),
-        ("ninja: build stopped: subcommand failed.", "the whole log is"),
-    ],
+    ("line", "said"), cases(__file__, "a_failure_shows_the_end_of_the_log_and_the_usual_cause")
 )
 def test_a_failure_shows_the_end_of_the_log_and_the_usual_cause(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str

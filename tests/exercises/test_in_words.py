@@ -27,11 +27,7 @@ def test_a_space_that_looks_like_another_is_shown_by_its_escape() -> None:
 
 
 @pytest.mark.parametrize(
-    ("in_a_notebook", "words"),
-    [
-        (True, "Look. In a notebook, call start_ros(). Go on."),
-        (False, "Look. In a program, write it. Go on."),
-    ],
+    ("in_a_notebook", "words"), cases(__file__, "a_sentence_for_the_other_kind_of_answer_is_left_out")
 )
 def test_a_sentence_for_the_other_kind_of_answer_is_left_out(in_a_notebook: bool, words: str) -> None:
     text = "Look. In a notebook, call start_ros(). In a program, write it. Go on."

@@ -14,7 +14,7 @@ from autograder.kit.runners import (
     process_line,
     workspace_report_line,
 )
-from tests.cases import cases
+from tests.cases import cases, named_cases
 
 STRING = "std_msgs/msg/String"
 NEW, OLD = "/robot/status_updates", "/chatter"
@@ -50,11 +50,7 @@ def test_the_next_step_fits_what_the_launch_says(what: str, next_step: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("started", "certain"),
-    [
-        pytest.param((11, 12), True, id="all programs are on the graph"),
-        pytest.param((11, 12, 13), False, id="a third one may be the talker that was moved"),
-    ],
+    ("started", "certain"), named_cases(__file__, "who_was_not_moved_is_certain_once_all_programs_are_there")
 )
 def test_who_was_not_moved_is_certain_once_all_programs_are_there(
     started: tuple[int, ...], certain: bool

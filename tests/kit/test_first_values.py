@@ -9,6 +9,7 @@ import pytest
 from autograder.kit.evidence import Event, Part
 from autograder.kit.oracle.naming.located import GO_THROUGH, located
 from autograder.kit.oracle.outputs import Kind, Output
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,12 +118,7 @@ def test_an_answer_without_a_request_of_its_own_is_no_copy_of_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("events", "says"),
-    [
-        ("input request late response done", "says “late”, and then uses the answer of /model all the same"),
-        ("input request response done", ""),
-        ("input request late input response done", ""),
-    ],
+    ("events", "says"), cases(__file__, "an_answer_that_is_used_after_it_was_given_up_is_named")
 )
 def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says: str) -> None:
     kinds = {
@@ -145,19 +141,7 @@ def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says
     assert (advice.next_step == GO_THROUGH) is not bool(says)
 
 
-@pytest.mark.parametrize(
-    ("events", "given", "says"),
-    [
-        (
-            "sent 1.0 sent 1.3 said 1.6",
-            "/go",
-            "it looks as if /go with 2, which came in between, does not set",
-        ),
-        ("sent 1.0 sent 1.3 said 1.9", "/go", ""),
-        ("sent 1.0 said 1.9", "2 s without an input", "it looks as if /go with 1 sets your timer going"),
-        ("sent 1.0 said 1.0 said 1.0", "/go", "says the same 2 times"),
-    ],
-)
+@pytest.mark.parametrize(("events", "given", "says"), cases(__file__, "what_set_the_time_going_is_said"))
 def test_what_set_the_time_going_is_said(events: str, given: str, says: str) -> None:
     words = events.split()
     kinds = {"sent": ("sent", "/go"), "said": ("message", "/said")}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.masters.source_notebooks import SET_UP_CELL, SET_UP_CODE, Points, source_notebook
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,11 +35,7 @@ def test_a_course_with_its_own_set_up_gets_the_cell_and_with_an_address_the_link
 
 
 @pytest.mark.parametrize(
-    ("archive", "said"),
-    [
-        ("", "the course has no address. Open it there"),
-        ("nothing://here", "could not be fetched from 'nothing://here'"),
-    ],
+    ("archive", "said"), cases(__file__, "outside_of_the_course_the_cell_says_what_is_missing")
 )
 def test_outside_of_the_course_the_cell_says_what_is_missing(
     course: Path, ten_points: Points, tmp_path_factory: pytest.TempPathFactory, archive: str, said: str

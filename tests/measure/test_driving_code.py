@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
 from tests.measure import driving_code
 from tests.measure.stimulus import without_texts
 
@@ -98,42 +99,13 @@ def reached(text: str, folder: Path, module_name: str = "autograder.kit.made_up"
         return code.texts()
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("1.5", "1.6"),
-        ("3.5", "3.6"),
-        ("4.5", "4.6"),
-        ("11", "12"),
-        ('"base"', '"other"'),
-        ("21", "22"),
-        ("31", "32"),
-        ("> 41", "> 42"),
-        ("51", "52"),
-        ("61 < 62", "61 < 63"),
-        ("raise TooLate", "raise ValueError"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new"), cases(__file__, "what_drives_a_subject_counts"))
 def test_what_drives_a_subject_counts(old: str, new: str, tmp_path: Path) -> None:
     assert old in SCENARIO
     assert reached(SCENARIO.replace(old, new), tmp_path) != reached(SCENARIO, tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("2.5", "2.6"),
-        ("Said well.", "Said better."),
-        ("# why", "# because"),
-        ("not asked", "never asked"),
-        ("what is said", "in other words"),
-        ("the turn", "this turn"),
-        ("it took {seconds} s", "{seconds} seconds are too long"),
-        ("seen on the card", "seen on a card"),
-        ("seconds: float", "seconds: int"),
-        ("import math", "import cmath"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new"), cases(__file__, "words_do_not_count"))
 def test_words_do_not_count(old: str, new: str, tmp_path: Path) -> None:
     assert old in SCENARIO
     assert reached(SCENARIO.replace(old, new), tmp_path) == reached(SCENARIO, tmp_path)

@@ -29,13 +29,7 @@ def test_the_newest_definition_takes_the_place_of_the_comment() -> None:
     assert text == PROGRAM.replace(f"{COPIED}Talker", NEW)
 
 
-@pytest.mark.parametrize(
-    "cell",
-    [
-        pytest.param("node = Node('tried')", id="a variable that is no constant"),
-        pytest.param("def text():\n    pass", id="the name of an argument"),
-    ],
-)
+@pytest.mark.parametrize("cell", named_cases(__file__, "other_cells_give_only_helpers"))
 def test_other_cells_give_only_helpers(cell: str) -> None:
     own = "class Talker(Node):\n    def say(self, text):\n        return node, text"
     assert with_definitions(PROGRAM, [cell, own]) == PROGRAM.replace(f"{COPIED}Talker", own)

@@ -9,6 +9,7 @@ import pytest
 from autograder.authoring.mutants import engine
 from autograder.authoring.mutants.code import Code, Edit
 from autograder.authoring.mutants.engine import Mutant, in_all_places, mutants, python_changes
+from tests.cases import cases
 
 HANDS = '''"""Hands."""
 
@@ -47,37 +48,7 @@ def lines(operator: str, kind: str = "") -> list[str]:
     ]
 
 
-@pytest.mark.parametrize(
-    ("operator", "kind", "line"),
-    [
-        ("number", "times 1.1", 'return "left" if seen.left > 1.65 else "right"'),
-        ("unit", "times 100", 'return "left" if seen.left > 150 else "right"'),
-        ("sign", "lost", "safe.linear.x = max(0.5, min(0.5, command.linear.x))"),
-        ("sign", "zero", "safe.linear.x = max(0.0, min(0.5, command.linear.x))"),
-        ("number_of_another_place", "", 'return "left" if seen.left > 0.5 else "right"'),
-        ("turned", "turned", "if seen.left < seen.right and seen.ahead[0] < limit:"),
-        ("operand_left_out", "", "if (seen.ahead[0] < limit):"),
-        ("bound", "left out max 0", "safe.linear.x = min(0.5, command.linear.x)"),
-        ("bound", "max for min", "safe.linear.x = max(-0.5, max(0.5, command.linear.x))"),
-        ("elif_as_if", "", "if seen.left == seen.right:"),
-        ("one_side", "", "if seen.left > 1.0 and seen.ahead[0] < limit:"),
-        ("other_field", "right for left", 'return "left" if seen.right > 1.5 else "right"'),
-        ("other_field", "", "safe.linear.x = max(-0.5, min(0.5, command.angular.z))"),
-        ("other_element", "index -1", "if seen.left > seen.right and seen.ahead[-1] < limit:"),
-        ("kept", "never written back", "last = command"),
-        ("made_once", "", "safe = self.__dict__.setdefault('_made_Twist', Twist())"),
-        (
-            "read_once",
-            "once",
-            'limit = self.__dict__.setdefault(\'_of_\' + "limit", self.get_parameter("limit").value)',
-        ),
-        ("printed", "published", "print(safe)"),
-        ("other_clock", "the computer's", "now = __import__('rclpy.clock').clock.Clock().now()"),
-        ("other_word", "for left", "return 'right' if seen.left > 1.5 else \"right\""),
-        ("printed", "nothing in one case", 'return None if seen.left > 1.5 else "right"'),
-        ("threads_of_another_kind", "no thread", "self.act(now)"),
-    ],
-)
+@pytest.mark.parametrize(("operator", "kind", "line"), cases(__file__, "an_operator_makes_its_mistake"))
 def test_an_operator_makes_its_mistake(operator: str, kind: str, line: str) -> None:
     assert line in lines(operator, kind)
 

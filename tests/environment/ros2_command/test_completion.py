@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -35,23 +37,11 @@ def offered(env: dict[str, str]) -> Callable[[str], list[str]]:
     return ask
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("ros2 ser", ["service"]),
-        ("ros2 topic e", ["echo"]),
-        ("ros2 topic echo --on", ["--once"]),
-        ("ros2 interface show my_robot_interfaces/srv/Add", ["my_robot_interfaces/srv/AddTwoInts"]),
-        ("ros2 service call /x my_robot_interfaces/srv/A", ["my_robot_interfaces/srv/AddTwoInts"]),
-        ("ros2 run demo_", ["demo_pkg"]),
-        ("ros2 run demo_pkg tal", ["talker"]),
-        ("ros2 run no_such_pkg tal", [""]),
-    ],
-)
+@pytest.mark.parametrize(("line", "words"), cases(__file__, "what_is_installed_is_offered"))
 def test_what_is_installed_is_offered(
-    offered: Callable[[str], list[str]], line: str, words: list[str]
+    offered: Callable[[str], list[str]], line: str, words: tuple[str, ...]
 ) -> None:
-    assert offered(line) == words
+    assert offered(line) == list(words)
 
 
 @pytest.mark.ros

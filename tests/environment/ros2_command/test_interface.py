@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from course_runtime.ros2_command.interface_show import nested_type, without_comment
+from tests.cases import cases
 
 if TYPE_CHECKING:
     import subprocess
@@ -35,15 +36,7 @@ def test_nested_types_are_recognized(line: str, nested: str | None) -> None:
     assert nested_type(line, "geometry_msgs") == nested
 
 
-@pytest.mark.parametrize(
-    ("line", "kept"),
-    [
-        ("int32 a # the first", "int32 a"),
-        ("# all of it", ""),
-        ('string s "a # b" # c', 'string s "a # b"'),
-        ("int32 a", "int32 a"),
-    ],
-)
+@pytest.mark.parametrize(("line", "kept"), cases(__file__, "comments_are_taken_off"))
 def test_comments_are_taken_off(line: str, kept: str) -> None:
     assert without_comment(line) == kept
 
@@ -69,15 +62,7 @@ def test_show_reads_the_name_from_a_pipe(ros2: Callable[..., subprocess.Complete
     assert "bool data" in shown.stdout.splitlines()
 
 
-@pytest.mark.parametrize(
-    ("name", "error"),
-    [
-        ("std_msgs/String", "Expected three parts separated by '/'"),
-        ("nothing_msgs/msg/String", "Unknown package 'nothing_msgs'"),
-        ("std_msgs/msg/Strin", "Could not find the interface"),
-        ("../msg/String", "Must not contain"),
-    ],
-)
+@pytest.mark.parametrize(("name", "error"), cases(__file__, "show_says_what_is_wrong"))
 def test_show_says_what_is_wrong(
     name: str, error: str, ros2: Callable[..., subprocess.CompletedProcess[str]]
 ) -> None:

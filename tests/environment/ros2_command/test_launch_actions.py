@@ -22,6 +22,8 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, Text
 from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
 from launch_ros.parameter_descriptions import ParameterValue, evaluate_dictionary
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from launch.action import LaunchDescriptionEntity
 
@@ -98,18 +100,7 @@ def test_values_that_no_parameter_can_have(value: object) -> None:
         evaluate_dictionary(LaunchContext(), {"p": value})
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        ({"nmae": "x"}, r"Node\(\) got an unexpected keyword argument 'nmae'"),
-        ({"node_executable": "x"}, "'node_executable'"),
-        ({"cached_output": True}, r"Node\(cached_output=…\) needs the full launch"),
-        ({"cmd": ["x"]}, "'cmd'"),
-        ({"parameters": {"a": 1}}, "must be a list of dictionaries and files"),
-        ({"remappings": ["a:=b"]}, "must be a list of pairs"),
-        ({"remappings": [("a", "b", "c")]}, "must be a list of pairs"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "error"), cases(__file__, "what_a_node_does_not_take"))
 def test_what_a_node_does_not_take(arguments: dict[str, Any], error: str) -> None:
     with pytest.raises(TypeError, match=error):
         node(**arguments)

@@ -36,16 +36,7 @@ def test_substitutions_in_texts(text: str, value: str, context: LaunchContext) -
     assert perform(context, parse_text(text)) == value
 
 
-@pytest.mark.parametrize(
-    ("text", "error"),
-    [
-        ("$(var name", "is not closed"),
-        ("$(what name)", "Unknown substitution: what"),
-        ("$(var)", "expects 1 to 2 argument"),
-        ("$(dirname x)", "expects 0 argument"),
-        ("$(var 'x)", "a ' is missing"),
-    ],
-)
+@pytest.mark.parametrize(("text", "error"), cases(__file__, "wrong_texts"))
 def test_wrong_texts(text: str, error: str) -> None:
     with pytest.raises(FrontendError, match=error):
         parse_text(text)
@@ -58,18 +49,9 @@ def test_what_has_no_value_is_named(context: LaunchContext) -> None:
         perform(context, parse_text("$(env NOTHING)"))
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("echo  a 'b c'", ["echo", "a", "b c"]),
-        ("run --name=$(var name) x", ["run", "--name=talker", "x"]),
-        ("$(var name)", ["talker"]),
-        ("a $(var nothing 'b c') d", ["a", "b c", "d"]),
-        ("--rate $(var rate)", ["--rate", "2.5"]),
-    ],
-)
-def test_command_lines_are_split_at_spaces(text: str, words: list[str], context: LaunchContext) -> None:
-    assert [perform(context, word) for word in parse_command(text)] == words
+@pytest.mark.parametrize(("text", "words"), cases(__file__, "command_lines_are_split_at_spaces"))
+def test_command_lines_are_split_at_spaces(text: str, words: tuple[str, ...], context: LaunchContext) -> None:
+    assert [perform(context, word) for word in parse_command(text)] == list(words)
 
 
 @pytest.mark.parametrize(
@@ -117,21 +99,7 @@ def test_both_formats_give_the_same_entities() -> None:
     assert xml == yaml
 
 
-@pytest.mark.parametrize(
-    ("body", "error"),
-    [
-        ('<node pkg="p" exec="e" nmae="x"/>', "Unexpected attribute.* found in `node`: nmae"),
-        ('<node pkg="p"/>', "Attribute 'exec' not found in Entity 'node'"),
-        ('<node pkg="p" exec="e"><remap from="a"/></node>', "Attribute 'to' not found in Entity 'remap'"),
-        ('<node pkg="p" exec="e"><parm name="a"/></node>', "Unexpected nested tag.* found in `node`: parm"),
-        ('<node pkg="p" exec="e"><param name="a"/></node>', "needs either a value or nested params"),
-        ('<nod pkg="p"/>', "Unrecognized entity of the type: nod"),
-        ("<node_container/>", "needs the full launch"),
-        ('<log message="a" if="1" unless="0"/>', "can't be used simultaneously"),
-        ('<group scoped="maybe"/>', "must be true or false"),
-        ("<log", "not well-formed"),
-    ],
-)
+@pytest.mark.parametrize(("body", "error"), cases(__file__, "wrong_tags_are_named"))
 def test_wrong_tags_are_named(body: str, error: str, tmp_path: Path) -> None:
     path = tmp_path / "a.launch.xml"
     path.write_text(f"<launch>{body}</launch>")
@@ -139,16 +107,7 @@ def test_wrong_tags_are_named(body: str, error: str, tmp_path: Path) -> None:
         load(str(path))
 
 
-@pytest.mark.parametrize(
-    ("text", "error"),
-    [
-        ("launch: [node: {pkg: p, exec: e, nmae: x}]", "Unexpected attribute"),
-        ("lunch: []", "Expected 'launch' as root tag"),
-        ("launch: []\nmore: []", "Expected only one root"),
-        ("launch: [{node: {}, log: {}}]", "only one key"),
-        ("launch: [", "can not be read"),
-    ],
-)
+@pytest.mark.parametrize(("text", "error"), cases(__file__, "wrong_yaml_is_named"))
 def test_wrong_yaml_is_named(text: str, error: str, tmp_path: Path) -> None:
     path = tmp_path / "a.launch.yaml"
     path.write_text(text)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -135,14 +137,7 @@ def test_nothing_is_left_of_a_package_that_cannot_be_written(ros2: Ros2, tmp_pat
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("words", "error"),
-    [
-        (("there",), "The directory already exists: ./there"),
-        (("test", "--build-type", "ament_python"), "can't be named 'test'"),
-        (("../outside",), "is not a package name"),
-    ],
-)
+@pytest.mark.parametrize(("words", "error"), cases(__file__, "what_can_not_be_created"))
 def test_what_can_not_be_created(words: tuple[str, ...], error: str, ros2: Ros2, tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
     done = ros2("pkg", "create", *words)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
@@ -31,14 +33,7 @@ def test_the_exit_code_of_the_program_is_the_exit_code(ros2: Ros2) -> None:
     assert done.returncode == 3
 
 
-@pytest.mark.parametrize(
-    ("words", "error"),
-    [
-        (("no_such_pkg", "x"), "Package 'no_such_pkg' not found\n"),
-        (("demo_pkg", "no_such_program"), "No executable found\n"),
-        (("demo_pkg", "notes.txt"), "No executable found\n"),
-    ],
-)
+@pytest.mark.parametrize(("words", "error"), cases(__file__, "what_is_not_there_is_named"))
 def test_what_is_not_there_is_named(words: tuple[str, ...], error: str, ros2: Ros2) -> None:
     done = ros2("run", *words)
     assert (done.stderr, done.returncode) == (error, 1)

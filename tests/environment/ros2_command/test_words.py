@@ -9,6 +9,7 @@ import pytest
 
 from course_runtime.ros2_command.commands import COMMANDS, ELSEWHERE
 from course_runtime.ros2_command.main import run
+from tests.cases import cases
 
 VERBS = [(command, verb) for command in COMMANDS for verb in COMMANDS[command].verbs]
 ALONE = [command for command in COMMANDS if COMMANDS[command].itself]
@@ -63,12 +64,7 @@ def test_the_rest_of_ros2cli_is_named_as_such(
 
 
 @pytest.mark.parametrize(
-    ("words", "meant"),
-    [
-        (("topics",), "ros2 topic"),
-        (("topic", "lst"), "ros2 topic list"),
-        (("param", "lode"), "ros2 param load"),
-    ],
+    ("words", "meant"), cases(__file__, "a_wrong_word_is_an_error_that_names_the_right_one")
 )
 def test_a_wrong_word_is_an_error_that_names_the_right_one(
     words: tuple[str, ...], meant: str, capsys: pytest.CaptureFixture[str]
@@ -87,16 +83,7 @@ def test_an_unknown_option_is_an_error_that_says_who_may_know_it(capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    ("words", "quoted"),
-    [
-        (
-            ("topic", "pub", "/chatter", "std_msgs/msg/String", "{data:", "hello", "you}"),
-            "'{data: hello you}'",
-        ),
-        (("topic", "pub", "--once", "/x", "std_msgs/String", "data:", "hello", "-r", "2"), "'data: hello'"),
-        (("service", "call", "/add", "std_srvs/srv/SetBool", "{data:", "true}"), "'{data: true}'"),
-        (("action", "send_goal", "/f", "a/action/F", "{order:", "5}", "--feedback"), "'{order: 5}'"),
-    ],
+    ("words", "quoted"), cases(__file__, "a_value_that_the_shell_has_cut_says_first_that_it_needs_quotes")
 )
 def test_a_value_that_the_shell_has_cut_says_first_that_it_needs_quotes(
     words: tuple[str, ...], quoted: str, capsys: pytest.CaptureFixture[str]

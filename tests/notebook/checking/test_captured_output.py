@@ -20,6 +20,7 @@ from std_msgs.msg import String
 from autograder import own_lines
 from autograder.notebook.checking import subject_reports
 from autograder.notebook.checking.subject_reports import MOST_CALLS, CapturedOutput
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -299,20 +300,7 @@ class Dock(Base):
 
 
 @pytest.mark.parametrize(
-    ("condition", "ends"),
-    [
-        ("self.left > 0.0", True),
-        ("self.left", True),
-        ("not self.docked", True),
-        ("left and self.left != 0.0", True),
-        ("self.near", False),
-        ("self.ways", False),
-        ("ways", False),
-        ("self.rest > 0.0", False),
-        ("self.ahead > 0.0", False),
-        ("self.way > 0.0", False),
-        ("self.end > 0.0", False),
-    ],
+    ("condition", "ends"), cases(__file__, "an_attribute_that_another_method_sets_may_end_a_loop")
 )
 def test_an_attribute_that_another_method_sets_may_end_a_loop(
     condition: str, ends: bool, tmp_path: Path
