@@ -6,11 +6,11 @@ import re
 import signal
 import textwrap
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     import subprocess
@@ -74,51 +74,22 @@ def pid_of(running: Running, name: str) -> int:
     return int(line.rpartition("[")[2].rstrip("]"))
 
 
-def test_what_a_launch_says(ros2: Ros2, write: Callable[[str], str], tmp_path: Path) -> None:
-    done = ros2("launch", write("ExecuteProcess(cmd=['echo', 'hello'], output='screen'), LogInfo(msg='x')"))
-    assert shape(done.stdout) == [
-        "[INFO] [launch]: All log files can be found below DIR",
-        "[INFO] [launch]: Default logging verbosity is set to INFO",
-        "[INFO] [launch.user]: x",
-        "[INFO] [echo-1]: process started with pid [N]",
-        "[echo-1] hello",
-        "[INFO] [echo-1]: process has finished cleanly [pid N]",
-    ]
-    assert done.returncode == 0
+@pytest.mark.parametrize("case", named_cases(__file__, "what_a_launch_says"))
+def test_what_a_launch_says(ros2: Ros2, write: Callable[[str], str], case: dict[str, Any]) -> None:
+    done = ros2("launch", *case.get("words", ()), write(case["actions"]))
+    lines = shape(done.stdout)
+    told = tuple(line for line in lines if case.get("of", "") in line)
+    assert told == case.get("lines", told)
+    assert [text for text in case.get("shows", ()) if text not in "\n".join([*lines, ""])] == []
+    hidden = (*case.get("hides", ()), "Traceback" if "code" in case else "no such text")
+    assert [text for text in hidden if text in done.stdout + done.stderr] == []
+    assert done.returncode == case.get("code", 0)
+
+
+def test_the_log_has_what_is_said(ros2: Ros2, write: Callable[[str], str], tmp_path: Path) -> None:
+    ros2("launch", write("LogInfo(msg='x')"))
     log = (tmp_path / "ros_log/latest/launch.log").read_text()
     assert re.search(r"^\d+\.\d{7} \[INFO\] \[launch.user\]: x$", log, re.MULTILINE)
-
-
-def test_a_crash_is_reported_with_name_and_exit_code(ros2: Ros2, write: Callable[[str], str]) -> None:
-    done = ros2("launch", write("Node(package='demo_pkg', executable='says', arguments=['3']),"))
-    lines = shape(done.stdout)
-    # By default stdout goes to the log and stderr to the screen.
-    assert "[says-1] on stderr" in lines
-    assert not any(line.startswith("[says-1] 3") for line in lines)
-    died = r"\[ERROR\] \[says-1\]: process has died \[pid N, exit code 3, cmd '/\S+/says 3 --ros-args'\]\."
-    assert re.fullmatch(died, lines[-1])
-    # As in Jazzy, the launch itself has done what it should.
-    assert done.returncode == 0
-
-
-def test_output_of_all_processes_can_be_shown(ros2: Ros2, write: Callable[[str], str]) -> None:
-    path = write("Node(package='demo_pkg', executable='says', arguments=['0', 'out']),")
-    assert "[says-1] 0 out --ros-args" not in ros2("launch", path).stdout
-    assert "[says-1] 0 out --ros-args" in ros2("launch", "-a", path).stdout
-
-
-@pytest.mark.parametrize(
-    ("actions", "error"),
-    cases(__file__, "an_error_in_the_launch_file"),
-)
-def test_an_error_in_the_launch_file(
-    actions: str, error: str, ros2: Ros2, write: Callable[[str], str]
-) -> None:
-    done = ros2("launch", write(actions))
-    assert "[ERROR] [launch]: Caught exception in launch (see debug for traceback): " in done.stdout
-    assert error in done.stdout
-    assert "Traceback" not in done.stdout + done.stderr
-    assert done.returncode == 1
 
 
 @pytest.mark.parametrize("name", ["/tmp/none.launch.py", "*.py", ""])
@@ -126,23 +97,6 @@ def test_a_file_that_its_package_has_not_is_said_so(ros2: Ros2, name: str) -> No
     done = ros2("launch", "demo_pkg", name)
     assert f"file '{name}' was not found in the share directory of package 'demo_pkg'" in done.stderr
     assert "Traceback" not in done.stderr
-
-
-def test_an_error_ends_what_was_started_before(ros2: Ros2, write: Callable[[str], str]) -> None:
-    actions = """
-        ExecuteProcess(cmd=['sleep', '100']),
-        TimerAction(period=0.1, actions=[LogInfo(msg=LaunchConfiguration('nothing'))]),
-    """
-    done = ros2("launch", write(actions))
-    assert "[INFO] [sleep-1]: sending signal 'SIGINT' to process[sleep-1]" in done.stdout
-    assert "exit code -2" in done.stdout
-    assert done.returncode == 1
-
-
-def test_a_program_that_can_not_be_started(ros2: Ros2, write: Callable[[str], str]) -> None:
-    done = ros2("launch", write("ExecuteProcess(cmd=['no_such_program']),"))
-    assert "[ERROR] [no_such_program-1]: exception occurred while executing process:" in done.stdout
-    assert done.returncode == 0
 
 
 def test_ctrl_c_ends_every_process(start: Start, write: Callable[[str], str]) -> None:
@@ -216,41 +170,6 @@ def test_even_a_killed_launch_leaves_nothing_behind(start: Start, write: Callabl
     wait_until_gone(pid)
 
 
-def test_events_of_processes(ros2: Ros2, write: Callable[[str], str]) -> None:
-    actions = """
-        first := ExecuteProcess(cmd=['sh', '-c', 'echo one; exit 4'], name='first'),
-        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg='started')])),
-        RegisterEventHandler(OnProcessIO(
-            target_action=first, on_stdout=lambda event: LogInfo(msg=event.text.decode().strip())
-        )),
-        RegisterEventHandler(OnProcessExit(
-            target_action=first,
-            on_exit=lambda event, context: LogInfo(msg=f'{event.process_name}: {event.returncode}'),
-        )),
-        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg='the end')])),
-    """
-    said = [line for line in ros2("launch", write(actions)).stdout.splitlines() if "launch.user" in line]
-    assert said == [
-        "[INFO] [launch.user]: started",
-        "[INFO] [launch.user]: one",
-        "[INFO] [launch.user]: first-1: 4",
-        "[INFO] [launch.user]: the end",
-    ]
-
-
-def test_a_required_process_ends_the_launch(ros2: Ros2, write: Callable[[str], str]) -> None:
-    actions = "ExecuteProcess(cmd=['sleep', '100']), ExecuteProcess(cmd=['true'], on_exit=Shutdown()),"
-    done = ros2("launch", write(actions))
-    assert "[INFO] [launch]: process[true-2] was required: shutting down launched system" in done.stdout
-    assert "sending signal 'SIGINT' to process[sleep-1]" in done.stdout
-    assert done.returncode == 0
-
-
-def test_respawn_stops_after_the_given_number(ros2: Ros2, write: Callable[[str], str]) -> None:
-    done = ros2("launch", write("ExecuteProcess(cmd=['false'], respawn=True, respawn_max_retries=2),"))
-    assert done.stdout.count("[false-1]: process started") == 3
-
-
 def test_a_timer_does_not_hold_up_the_end(start: Start, write: Callable[[str], str]) -> None:
     running = start(
         "launch", write("TimerAction(period=100.0, actions=[LogInfo(msg='late')]), LogInfo(msg='now'),")
@@ -259,21 +178,6 @@ def test_a_timer_does_not_hold_up_the_end(start: Start, write: Callable[[str], s
     running.send(signal.SIGINT)
     assert running.end() == 0
     assert "late" not in running.text
-
-
-def test_a_terminal_can_be_emulated(ros2: Ros2, write: Callable[[str], str]) -> None:
-    actions = """
-        ExecuteProcess(cmd=['sh', '-c', 'test -t 1 && echo True || echo False'], output='screen', name=name,
-                       emulate_tty=tty) for name, tty in (('plain', False), ('tty', True))
-    """
-    text = ros2("launch", write(f"*[{actions.strip()}]")).stdout
-    assert "[plain-1] False" in text
-    assert "[tty-2] True" in text
-
-
-def test_a_line_without_an_end_is_shown_too(ros2: Ros2, write: Callable[[str], str]) -> None:
-    text = ros2("launch", write("ExecuteProcess(cmd=['printf', 'a\\nb'], output='screen'),")).stdout
-    assert "[printf-1] a\n[printf-1] b\n" in text
 
 
 def test_arguments_of_a_launch_file(ros2: Ros2, write: Callable[[str], str]) -> None:
@@ -307,19 +211,6 @@ def test_arguments_of_a_launch_file(ros2: Ros2, write: Callable[[str], str]) -> 
     wrong = ros2("launch", path, "rate=5")
     assert wrong.stderr == "malformed launch argument 'rate=5', expected format '<name>:=<value>'\n"
     assert wrong.returncode == 1
-
-
-def test_no_arguments(ros2: Ros2, write: Callable[[str], str]) -> None:
-    shown = ros2("launch", "-s", write("LogInfo(msg='x'),")).stdout
-    assert shown == "Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n"
-
-
-def test_print_describes_without_launching(ros2: Ros2, write: Callable[[str], str]) -> None:
-    shown = ros2("launch", "--print", write("LogInfo(msg='x'), ExecuteProcess(cmd=['false']),")).stdout
-    assert shown.splitlines()[1:] == [
-        "├── LogInfo('x')",
-        "└── ExecuteProcess(cmd=['false'], cwd=None, env=None, shell=False)",
-    ]
 
 
 def test_a_launch_file_of_a_package(ros2: Ros2, prefix: Path) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     import subprocess
@@ -16,57 +19,14 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.ros
 
 
-def test_a_domain_is_picked_exported_and_named(run_script: RunScript) -> None:
-    script = """
-import os, subprocess, sys
-from autograder.notebook.nodes.ros_session import start_ros
-session = start_ros()
-child = subprocess.run([sys.executable, "-c", "import os; print(os.environ['ROS_DOMAIN_ID'])"],
-                       capture_output=True, text=True)
-assert session.picked and 1 <= session.domain <= 101, session
-assert child.stdout.strip() == str(session.domain), child
-assert start_ros() == session
-print(session)
-"""
-    done = run_script(script, ROS_DOMAIN_ID=None)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("ROS 2 is up on domain ")
-    assert "export ROS_DOMAIN_ID=" in done.stdout
-    assert done.stdout.count("\n") == 1
-
-
-def test_the_sessions_domain_is_taken(run_script: RunScript, domain: int) -> None:
-    done = run_script("from autograder.notebook.nodes.ros_session import start_ros; print(start_ros())")
-    assert done.stdout == f"ROS 2 is up on domain {domain}.\n"
-
-
-@pytest.mark.parametrize("shutdown", ["rclpy.shutdown()", "rclpy.get_default_context().shutdown()"])
-def test_ros_starts_again_after_a_shutdown(run_script: RunScript, shutdown: str) -> None:
-    script = f"""
-import rclpy
-from autograder.notebook.nodes.ros_session import start_ros
-start_ros()
-{shutdown}
-assert not rclpy.ok()
-start_ros()
-rclpy.create_node("alive")
-print(rclpy.ok())
-"""
-    done = run_script(script)
-    assert (done.stdout, done.stderr, done.returncode) == ("True\n", "", 0)
-
-
-def test_logs_go_to_standard_output_without_colours(run_script: RunScript) -> None:
-    script = """
-import rclpy
-from autograder.notebook.nodes.ros_session import start_ros
-start_ros()
-rclpy.create_node("speaker").get_logger().error("over here")
-"""
-    done = run_script(script, RCUTILS_LOGGING_USE_STDOUT=None, RCUTILS_COLORIZED_OUTPUT=None)
-    assert "over here" in done.stdout
-    assert "\x1b[" not in done.stdout
-    assert done.stderr == ""
+@pytest.mark.parametrize("runs", named_cases(__file__, "what_a_program_that_starts_ros_prints"))
+def test_what_a_program_that_starts_ros_prints(
+    run_script: RunScript, domain: int, runs: tuple[dict[str, Any], ...]
+) -> None:
+    for one in runs:
+        done = run_script(one["script"], **{name: value or None for name, value in one["variables"].items()})
+        assert (done.stderr, done.returncode) == ("", 0)
+        assert re.fullmatch(one["prints"].replace("{domain}", str(domain)), done.stdout), done.stdout
 
 
 def test_what_a_program_prints_is_in_a_file_at_once(run_script: RunScript, tmp_path: Path) -> None:
@@ -102,61 +62,3 @@ from std_msgs.msg import String
     assert done.returncode == 1
     assert "AssertionError" in done.stderr
     assert said in done.stderr.splitlines()[-1]
-
-
-@pytest.mark.parametrize(("chosen", "used"), [(None, "Release"), ("Debug", "Debug")])
-def test_a_cell_builds_interfaces_as_a_check_does_so_that_the_check_can_use_them(
-    run_script: RunScript, chosen: str | None, used: str
-) -> None:
-    script = "import autograder.notebook, os; print(os.environ['CMAKE_BUILD_TYPE'])"
-    assert run_script(script, CMAKE_BUILD_TYPE=chosen).stdout == f"{used}\n"
-
-
-def test_the_users_own_settings_stay(run_script: RunScript) -> None:
-    script = """
-import os
-from autograder.notebook.nodes.ros_session import prepare_environment
-prepare_environment()
-from std_msgs.msg import String
-String(data=42)
-print(os.environ["RCUTILS_LOGGING_USE_STDOUT"], os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"])
-"""
-    done = run_script(
-        script,
-        RCUTILS_LOGGING_USE_STDOUT="0",
-        ROS_PYTHON_CHECK_FIELDS="0",
-        ROS_AUTOMATIC_DISCOVERY_RANGE="SUBNET",
-    )
-    assert done.stdout == "0 SUBNET\n"
-
-
-def test_discovery_stays_on_this_host(run_script: RunScript) -> None:
-    script = """
-import os
-from autograder.notebook.nodes.ros_session import prepare_environment
-prepare_environment()
-print(os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE"))
-"""
-    assert run_script(script, ROS_AUTOMATIC_DISCOVERY_RANGE=None).stdout == "LOCALHOST\n"
-    older = run_script(script, ROS_AUTOMATIC_DISCOVERY_RANGE=None, ROS_LOCALHOST_ONLY="1")
-    assert older.stdout == "None\n", "the older variable of the same meaning must not be contradicted"
-
-
-def test_an_interrupt_leaves_ros_up_even_after_the_students_own_init(run_script: RunScript) -> None:
-    script = """
-import os, signal, time
-import rclpy
-from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options
-from autograder.notebook.nodes.ros_session import start_ros
-{first}
-start_ros()
-assert get_current_signal_handlers_options() == SignalHandlerOptions.NO
-try:
-    os.kill(os.getpid(), signal.SIGINT)
-    time.sleep(20)
-except KeyboardInterrupt:
-    print("interrupted, up:", rclpy.ok())
-"""
-    for first in ("pass", "rclpy.init()"):
-        done = run_script(script.format(first=first))
-        assert (done.stdout, done.returncode) == ("interrupted, up: True\n", 0), first
