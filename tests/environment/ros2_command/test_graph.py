@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
+import shlex
 import signal
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
 
-from tests.cases import cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     import subprocess
@@ -63,43 +64,28 @@ def test_what_a_destroyed_node_leaves_behind_is_not_waited_for(start: Callable[.
     running.kill()
 
 
-def test_topics_of_a_talker(talker: Running, call: Call) -> None:
-    assert call("topic", "list") == "/chatter\n/parameter_events\n/rosout\n"
-    assert call("topic", "list", "-t").splitlines()[0] == "/chatter [std_msgs/msg/String]"
-    assert call("topic", "list", "-c") == "3\n"
-    details = call("topic", "list", "-v")
-    assert details.startswith("Published topics:\n * /chatter [std_msgs/msg/String] 1 publisher\n")
-    assert "\nSubscribed topics:\n" in details
-    assert call("topic", "type", "/chatter") == "std_msgs/msg/String\n"
-    assert call("topic", "type", "/chater", code=1) == ""
-    assert call("topic", "find", "std_msgs/msg/String") == "/chatter\n"
+READY = {"talker": "said", "servers": "ready"}
+"""What a program says when it can be asked."""
 
 
-def test_info_counts_and_names_endpoints(talker: Running, call: Call) -> None:
-    assert call("topic", "info", "/chatter") == (
-        "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
-    )
-    details = call("topic", "info", "-v", "/chatter")
-    assert "Node name: talker\nNode namespace: /\nTopic type: std_msgs/msg/String\n" in details
-    assert "  Reliability: RELIABLE\n" in details
-    assert call("topic", "info", "/chater", code=1) == "Unknown topic '/chater'\n"
-
-
-def test_echo_shows_a_message_as_yaml(talker: Running, call: Call) -> None:
-    assert re.fullmatch(r"data: Hello \d+\n---\n", call("topic", "echo", "--once", "/chatter"))
-    assert re.fullmatch(r"Hello \d+\n---\n", call("topic", "echo", "--once", "/chatter", "--field", "data"))
-    assert re.fullmatch(r"Hello \d+\n", call("topic", "echo", "--once", "/chatter", "--csv"))
-    filtered = call("topic", "echo", "--once", "/chatter", "--filter", "int(m.data.split()[1]) % 5 == 0")
-    assert re.fullmatch(r"data: Hello \d*[05]\n---\n", filtered)
-    info = call("topic", "echo", "--once", "-i", "/chatter")
-    assert "source_timestamp: " in info
-
-
-def test_echo_ends_in_time_and_names_what_is_wrong(talker: Running, call: Call) -> None:
-    assert call("topic", "echo", "/silence", "std_msgs/msg/String", "--timeout", "0.2") == ""
-    assert "Could not determine the type" in call("topic", "echo", "/silence", code=1)
-    assert "message type is invalid" in call("topic", "echo", "/chatter", "std_msgs/msg/Strin", code=1)
-    assert "Invalid field 'dta'" in call("topic", "echo", "/chatter", "--field", "dta", code=1)
+@pytest.mark.parametrize("scene", named_cases(__file__, "what_the_verbs_say"))
+def test_what_the_verbs_say(
+    scene: dict[str, Any],
+    start: Callable[..., Running],
+    ros2: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    started = [start(name, program=True) for name in scene["started"]]
+    for running, name in zip(started, scene["started"], strict=True):
+        running.wait_for(READY[name])
+    for ask in scene["asks"]:
+        done = ros2(*shlex.split(ask["ros2"]))
+        said = done.stderr if ask.get("code") or "warns" in ask else done.stdout
+        assert done.returncode == ask.get("code", 0), f"{ask['ros2']}: {done.stderr}"
+        assert said == ask.get("says", said), ask["ros2"]
+        assert re.fullmatch(ask.get("like", "(?s:.*)"), said), f"{ask['ros2']}: {said}"
+        assert [text for text in (*ask.get("has", ()), ask.get("warns", "")) if text not in said] == []
+        for running in started if "then" in ask else []:
+            running.wait_for(ask["then"])
 
 
 def test_ctrl_c_ends_echo(talker: Running, start: Callable[..., Running]) -> None:
@@ -153,74 +139,12 @@ def test_pub_reaches_a_listener(start: Callable[..., Running], call: Call) -> No
     listener.wait_for("heard thrice")
 
 
-def test_pub_names_what_is_wrong(call: Call) -> None:
-    pub = ("topic", "pub", "--once", "/x")
-    assert call(*pub, "std_msgs/msg/Strin", code=1) == "The passed message type is invalid\n"
-    assert "object has no attribute 'dta'" in call(*pub, "std_msgs/msg/String", "{dta: x}", code=1)
-    assert "Expected 1 subcribers but only got 0" in call(
-        *pub, "std_msgs/msg/String", "{data: x}", "--max-wait-time-secs", "0.1", code=1
-    )
-
-
-def test_a_service_is_found_and_called(servers: Running, call: Call) -> None:
-    assert "/add_two_ints" in call("service", "list").splitlines()
-    assert "/add_two_ints [my_robot_interfaces/srv/AddTwoInts]" in call("service", "list", "-t")
-    assert not any("/_action/" in name for name in call("service", "list").splitlines())
-    assert call("service", "type", "/add_two_ints") == "my_robot_interfaces/srv/AddTwoInts\n"
-    assert call("service", "find", "my_robot_interfaces/srv/AddTwoInts") == "/add_two_ints\n"
-    assert call("service", "info", "/add_two_ints") == (
-        "Type: my_robot_interfaces/srv/AddTwoInts\nClients count: 0\nServices count: 1\n"
-    )
-    assert call("service", "info", "/add", code=1) == "Unknown service '/add'\n"
-    answer = call("service", "call", "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts", "{a: 10, b: 20}")
-    assert answer == (
-        "requester: making request: my_robot_interfaces.srv.AddTwoInts_Request(a=10, b=20)\n\n"
-        "response:\nmy_robot_interfaces.srv.AddTwoInts_Response(sum=30)\n\n"
-    )
-
-
-def test_call_names_what_is_wrong(call: Call) -> None:
-    assert "service type is invalid" in call("service", "call", "/x", "std_srvs/srv/Nothing", code=1)
-    wrong = call("service", "call", "/x", "my_robot_interfaces/srv/AddTwoInts", "{c: 1}", code=1)
-    assert wrong == "Failed to populate field: 'AddTwoInts_Request' object has no attribute 'c'\n"
-
-
 def test_call_says_that_it_waits_for_a_service(start: Callable[..., Running]) -> None:
     waiting = start("service", "call", "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts", "{a: 1, b: 2}")
     waiting.wait_for("waiting for service to become available...")
     start("servers", program=True)
     waiting.wait_for("AddTwoInts_Response(sum=3)")
     assert waiting.end() == 0
-
-
-def test_an_action_is_found_and_described(servers: Running, call: Call) -> None:
-    assert call("action", "list") == "/fibonacci\n"
-    assert call("action", "list", "-t") == "/fibonacci [my_robot_interfaces/action/Fibonacci]\n"
-    assert call("action", "type", "/fibonacci") == "my_robot_interfaces/action/Fibonacci\n"
-    assert call("action", "type", "/fibonaci", code=1) == ""
-    assert call("action", "info", "/fibonacci") == (
-        "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n    /desk/servers\n"
-    )
-
-
-def test_a_goal_with_feedback(servers: Running, call: Call) -> None:
-    words = ("action", "send_goal", "/fibonacci", "my_robot_interfaces/action/Fibonacci", "{order: 3}", "-f")
-    shown = call(*words)
-    assert re.fullmatch(
-        r"Waiting for an action server to become available\.\.\.\n"
-        r"Sending goal:\n     order: 3\n\n"
-        r"Goal accepted with ID: [0-9a-f]{32}\n\n"
-        r"Feedback:\n    partial_sequence:\n- 0\n- 1\n- 1\n\n"
-        r"Feedback:\n    partial_sequence:\n- 0\n- 1\n- 1\n- 2\n\n"
-        r"Result:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\n"
-        r"Goal finished with status: SUCCEEDED\n",
-        shown,
-    )
-
-
-def test_a_rejected_goal(servers: Running, call: Call) -> None:
-    words = ("action", "send_goal", "/fibonacci", "my_robot_interfaces/action/Fibonacci", "{order: 21}")
-    assert call(*words).endswith("Goal was rejected.\n")
 
 
 def test_ctrl_c_cancels_the_goal(servers: Running, start: Callable[..., Running]) -> None:
@@ -245,33 +169,6 @@ def test_ctrl_c_cancels_the_goal_also_while_a_message_is_taken(
     assert goal.end() == 2
 
 
-def test_nodes(talker: Running, servers: Running, call: Call) -> None:
-    assert call("node", "list") == "/desk/servers\n/talker\n"
-    assert call("node", "list", "-c") == "2\n"
-    info = call("node", "info", "/desk/servers")
-    assert info.startswith("/desk/servers\n  Subscribers:\n\n  Publishers:\n    /parameter_events: ")
-    assert "  Service Servers:\n    /add_two_ints: my_robot_interfaces/srv/AddTwoInts\n" in info
-    assert info.endswith(
-        "  Action Servers:\n    /fibonacci: my_robot_interfaces/action/Fibonacci\n  Action Clients:\n\n"
-    )
-    assert call("node", "info", "/nobody", code=1) == "Unable to find node '/nobody'\n"
-
-
-def test_parameters(talker: Running, call: Call) -> None:
-    assert call("param", "list", "/talker") == (
-        "  rate\n  start_type_description_service\n  use_sim_time\n  words\n"
-    )
-    assert call("param", "list").startswith("/talker:\n  rate\n")
-    assert "  rate (type: double)\n" in call("param", "list", "/talker", "--param-type")
-    assert call("param", "get", "/talker", "words") == "String value is: Hello\n"
-    assert call("param", "get", "talker", "rate", "--hide-type") == "10.0\n"
-    assert call("param", "set", "/talker", "words", "Good day") == "Set parameter successful\n"
-    assert call("param", "get", "/talker", "words") == "String value is: Good day\n"
-    talker.wait_for("said Good day")
-    assert call("param", "get", "/talker", "nothing", code=1) == "Parameter not set\n"
-    assert call("param", "get", "/nobody", "words", "--timeout", "0", code=1) == "Node not found\n"
-
-
 def test_parameters_are_described_written_to_a_file_and_read_from_one(
     talker: Running, call: Call, tmp_path: Path
 ) -> None:
@@ -290,14 +187,6 @@ def test_parameters_are_described_written_to_a_file_and_read_from_one(
     assert "`ros2 param dump /talker` prints one" in call("param", "load", "/talker", str(file), code=1)
     file.write_text("/other:\n  ros__parameters:\n    words: no\n")
     assert "does not contain parameters for /talker" in call("param", "load", "/talker", str(file), code=1)
-
-
-def test_setting_a_wrong_type_fails(
-    talker: Running, ros2: Callable[..., subprocess.CompletedProcess[str]]
-) -> None:
-    done = ros2("param", "set", "/talker", "use_sim_time", "maybe")
-    assert done.stderr.startswith("Setting parameter failed: Wrong parameter type")
-    assert done.returncode == 0
 
 
 def test_doctor_sees_both_sides_of_a_topic(
