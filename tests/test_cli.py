@@ -20,7 +20,7 @@ from autograder.kit.reported_texts import AT_PACE
 from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.verdict import not_checked
 from course_runtime.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 from tests.measure.bank import answer_named
 
 TALKER = answers_folder("lab_1_2.talker")
@@ -134,12 +134,8 @@ def test_a_right_answer_ends_with_0_and_a_wrong_one_with_1(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("typed_in", "words", "counts"),
     [
-        ("mine", ("python3", "talker.py"), True),
-        ("mine", ("ros2", "run", "my_robot_pkg", "talker"), True),
+        *cases(__file__, "only_a_program_of_the_students_folder_earns_progress"),
         ("elsewhere", (sys.executable, "../mine/talker.py"), True),
-        ("elsewhere", ("python3", "solution.py"), False),
-        ("mine", ("python3", "../elsewhere/solution.py"), False),
-        ("elsewhere", ("ros2", "run", "my_robot_pkg", "talker"), False),
     ],
 )
 def test_only_a_program_of_the_students_folder_earns_progress(

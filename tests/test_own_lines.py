@@ -113,16 +113,11 @@ def test_a_loop_is_endless_only_if_no_line_ends_it(old: str, new: str, endless: 
 @pytest.mark.parametrize(
     ("text", "ends"),
     [
+        *cases(__file__, "a_loop_over_attributes_is_endless_only_if_no_other_function_sets_them"),
         ("while self.left > 0.0:\n    self.forward()", ENDLESS),
         ("while self.left:\n    self.forward()", ENDLESS),
-        ("while self:\n    self.forward()", ""),
-        ("while self.left.there:\n    self.forward()", ""),
-        ("while self.left > 0.0:\n    self.left -= 0.25", ""),
-        ("while self.other > 0.0:\n    self.forward()", ""),
         ("while True:\n    self.forward()", UNLEFT),
         ("while 1:\n    self.left -= 0.25", UNLEFT),
-        ("while 0:\n    pass", ""),
-        ("while True:\n    if self.left < 0.0:\n        break", ""),
     ],
 )
 def test_a_loop_over_attributes_is_endless_only_if_no_other_function_sets_them(text: str, ends: str) -> None:

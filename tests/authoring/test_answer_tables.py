@@ -74,15 +74,7 @@ def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        pytest.param(
-            'diagnosis = "counter_start"\n', "", "a wrong answer needs a diagnosis", id="no diagnosis"
-        ),
-        pytest.param('base = "usual.py"\n', "", "an edit needs the fields base and change", id="no base"),
-        pytest.param("shows", "show", "unknown field `show`", id="misspelt"),
-        pytest.param("why =", "why", "Expected '='", id="no TOML"),
-        pytest.param(
-            'why = "1, 2, 3"', "why = 1", r"Expected `str`, got `int` - at `\$\[...\].why`", id="no text"
-        ),
+        *named_cases(__file__, "a_broken_table_is_named"),
         pytest.param(
             EDIT, '"a.py" = { why = "?", diagnosis = "a" }', "the file .*a.py does not exist", id="no file"
         ),

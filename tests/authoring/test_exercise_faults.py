@@ -13,6 +13,7 @@ from autograder.authoring.answer_bank import answers
 from autograder.authoring.exercise_faults import still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.judge import evidence_files
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -87,74 +88,9 @@ def test_a_check_and_a_stop_need_no_sentence_before_them(lab: Path) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "rule"),
     [
-        ("lab.md", "*20 minutes · for beginners*", "", "lab.md: minutes: "),
-        ("lab.md", "https://docs.ros.org/en/jazzy/", "https://example.com/", "lab.md: closing link: "),
+        *cases(__file__, "a_rule_that_is_broken_is_named"),
         ("lab.md", "Robots tell", "Robots " * 151 + "tell", "lab.md: begin by doing: "),
         ("lab.md", "Robots tell", "Robots " * 401 + "tell", "lab.md: the first task comes soon: "),
-        (
-            "lab.md",
-            "Publish on `battery`",
-            "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\n%%bash --no-raise-error\nls\n```\n\n"
-            "Publish on `battery`",
-            "lab.md: a demonstration is predicted: ",
-        ),
-        (
-            "lab.md",
-            "Publish on `battery`",
-            "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\nprint(Battery)\n```\n\nPublish on `battery`",
-            "lab.md: a demonstration is predicted: ",
-        ),
-        (
-            "lab.md",
-            "## Going",
-            "```{code-cell} ipython3\nrobot.move()\n```\n\n## Going",
-            "lab.md: a code cell is introduced: ",
-        ),
-        (
-            "lab.md",
-            "Publish on `battery`",
-            "Publish (not often) on `battery` (a topic)",
-            "lab.md: a task is plain: ",
-        ),
-        (
-            "lab.md",
-            "        self.charge -= 1\n",
-            "        self.charge -= 1\n" * 9,
-            "lab.md: a task is small: ",
-        ),
-        (
-            "battery.py",
-            "\nEXERCISE",
-            'battery.knows("counted_up", lambda *_: False, "", "")\nEXERCISE',
-            "docs/mistakes.md: no paragraph about `counted_up`",
-        ),
-        ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
-        (
-            "battery.py",
-            '": "rate"',
-            '": "charge"',
-            "text: “every 0.5 s” states a period, and no criterion judges it",
-        ),
-        ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
-        (
-            "battery.py",
-            "    text={",
-            '    counts={"rate": "A. B! C?"},\n    text={',
-            "text: counts has more than 2 sentences about rate",
-        ),
-        (
-            "battery.py",
-            "    text={",
-            '    counts={"volts": "A."},\n    text={',
-            "text: the criterion volts does not",
-        ),
-        ("battery.py", '"every 0.5 s"', '"Cows"', "text: lab.md does not say “Cows”"),
-        (
-            "battery.answers/wrong/answers.toml",
-            '["topic_name.py"]',
-            '["odd.py"]',
-            "answers: rename wrong/odd.py, ",
-        ),
     ],
 )
 def test_a_rule_that_is_broken_is_named(lab: Path, file: str, old: str, new: str, rule: str) -> None:

@@ -9,33 +9,14 @@ import pytest
 from benchmarks.cpu_by_role import ROLES, Accounts, role_of, table
 from benchmarks.machine import CpuGroup
 from course_runtime.python_child import python_child
+from tests.cases import cases
 
 SERVER = "python -P -m autograder.boxes.fork_server"
 
 
 @pytest.mark.parametrize(
     ("words", "folder", "now", "role"),
-    [
-        ("python -P -m autograder.grading.running.order_executor /x 2 boxed", "/", "grader", "executor"),
-        (
-            f"{SERVER} inside autograder.boxes.desk_program 4 list=autograder.grading.lists",
-            "",
-            "grader",
-            "desks",
-        ),
-        (f"{SERVER} beside autograder.boxes.box_supervisor 5", "/", "executor", "boxes"),
-        (f"{SERVER} inside autograder.judge.controlled_judge 5", "/", "executor", "judges"),
-        (f"{SERVER} inside autograder.execution.program_process 5", "/", "executor", "programs"),
-        (f"{SERVER} inside autograder.execution.kernel_process 5", "/home/work", "kernels", "kernels"),
-        (f"{SERVER} inside autograder.execution.kernel_process 5", "/", "kernels", "desks"),
-        ("/bin/bash", "/home/work", "kernels", "commands"),
-        ("bwrap --args 9 -- /bin/cat", "/", "boxes", "boxes"),
-        ("bwrap --args 9 -- python -P -m colcon build", "/", "boxes", "builds"),
-        ("bwrap --args 9 -- ros2 launch plain.launch.py", "/", "boxes", "programs"),
-        ("cmake --build", "/", "builds", "builds"),
-        (f"{SERVER} inside autograder.boxes.kernel_process 8 interfaces", "", "grader", "kernels"),
-        ("", "/", "boxes", "boxes"),
-    ],
+    cases(__file__, "a_process_has_the_role_of_its_command_line_or_of_its_parent"),
 )
 def test_a_process_has_the_role_of_its_command_line_or_of_its_parent(
     words: str, folder: str, now: str, role: str

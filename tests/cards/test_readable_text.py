@@ -9,22 +9,14 @@ import pytest
 
 from autograder.cards.readable_text import _escaped, block, label, one_line, paragraph, width, wrap
 from autograder.standard_output import printable_json
+from tests.cases import cases
 
 
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("plain", "plain"),
-        ("a\x00b", "a\\x00b"),
-        ("\x1b[31mred", "\\x1b[31mred"),
-        ("two\nlines\tand\rmore", "two\\nlines\\tand\\rmore"),
-        ("\u202eevil", "\\u202eevil"),
-        ("\u2066x\u2069", "\\u2066x\\u2069"),
-        ("zero\u200bwidth", "zero\\u200bwidth"),
+        *cases(__file__, "one_line_writes_out_what_cannot_be_seen"),
         ("\ud800", "\\ud800"),
-        ("\ufffe \U0001fffe", "\\ufffe \\U0001fffe"),
-        ("\U000e0041", "\\U000e0041"),
-        ("Grüße, مرحبا, 你好 👩‍🚀", "Grüße, مرحبا, 你好 👩‍🚀"),
     ],
 )
 def test_one_line_writes_out_what_cannot_be_seen(text: str, shown: str) -> None:
@@ -95,15 +87,7 @@ def test_printed_json_moves_no_cursor_and_reads_back_the_same() -> None:
     assert json.loads(printed) == {"said": said}
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("[1.1795533, 2.0, 0.51234]", "[1.18, 2.0, 0.51]"),
-        ("[1.1795533, 1.99869, 3.0, 2.38654, 0.94]", "[1.18, 2.00, …, 0.94]"),
-        ("linear.x=0.5, linear.y=0.0, angular.z=1.57", "linear.x=0.5, …, angular.z=1.57"),
-        ("Hello, " + "a" * 40, "Hello, aaaaaaaa…aaaaaaaaaaaaaaa"),
-    ],
-)
+@pytest.mark.parametrize(("text", "shown"), cases(__file__, "a_label_is_cut_between_its_values"))
 def test_a_label_is_cut_between_its_values(text: str, shown: str) -> None:
     limit = 22 if text.startswith("[") else 31
     assert label(text, limit) == shown

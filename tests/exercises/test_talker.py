@@ -179,42 +179,12 @@ def _spaced(gaps: list[float], *, simulated: bool = False) -> list[Event]:
     ]
 
 
-@pytest.mark.parametrize(
-    ("gaps", "right"),
-    [
-        ([0.5] * 6, True),
-        ([0.55] * 6, True),
-        ([0.47] * 6, True),
-        ([0.5, 0.5, 1.2, 0.02, 0.28, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5], True),
-        ([0.5, 0.5, 0.9, 0.1, 0.5, 0.5], True),
-        ([0.5, 0.5, 0.9, 0.5, 0.5, 0.5], True),
-        ([0.4] * 6, False),
-        ([0.6] * 6, False),
-        ([1.0] * 6, False),
-        ([0.1] * 6, False),
-        ([0.0, 1.0] * 6, False),
-        ([0.0, 0.0, 1.5] * 4, False),
-        ([0.2, 0.8] * 6, False),
-        ([0.5, 0.5, 1.0] * 4, False),
-    ],
-)
+@pytest.mark.parametrize(("gaps", "right"), cases(__file__, "in_real_time_one_message_in_a_row_may_be_late"))
 def test_in_real_time_one_message_in_a_row_may_be_late(gaps: list[float], right: bool) -> None:
     assert judged("rate", _evidence(_spaced(gaps), real_time=True)) is right
 
 
-@pytest.mark.parametrize(
-    ("gaps", "right"),
-    [
-        ([0.5] * 19, True),
-        ([0.5, 0.5, 0.55, 0.5, 0.45] * 4, True),
-        ([0.55, 0.5, 0.5, 0.5, 0.5] * 4, True),
-        ([0.55] * 19, False),
-        ([0.45] * 19, False),
-        ([0.0, 1.0] * 10, False),
-        ([0.3, 0.7] * 10, False),
-        ([0.5] * 10 + [0.75] + [0.5] * 8, False),
-    ],
-)
+@pytest.mark.parametrize(("gaps", "right"), cases(__file__, "in_simulated_time_every_interval_counts"))
 def test_in_simulated_time_every_interval_counts(gaps: list[float], right: bool) -> None:
     assert judged("rate", _evidence(_spaced([0.5, *gaps], simulated=True))) is right
 

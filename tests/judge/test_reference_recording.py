@@ -11,6 +11,7 @@ from autograder.judge import reference_recording
 from autograder.judge.one_check import Seen
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -143,11 +144,8 @@ def _said(number: int, name: str) -> Part:
 @pytest.mark.parametrize(
     ("numbers", "attempt", "recorded"),
     [
-        pytest.param((2, 2), 0, 2, id="it tells, and the solution does the same twice"),
-        pytest.param((1, 2, 2), 1, 2, id="in the first drawing, the answer to a practice drawing is right"),
-        pytest.param((2, 3, 4, 4), 1, 4, id="in the first drawing, the solution does not do the same twice"),
+        *named_cases(__file__, "a_drawing_of_a_class_is_drawn_again_unless_it_tells"),
         pytest.param((2, None, 2), 0, 2, id="a look is doubtful"),
-        pytest.param((1, 9, 1, 9, 9), 3, 9, id="no drawing tells, so the last one counts"),
     ],
 )
 def test_a_drawing_of_a_class_is_drawn_again_unless_it_tells(

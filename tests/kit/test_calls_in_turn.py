@@ -4,22 +4,13 @@ import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from tests.cases import cases
 
 KINDS = {"i": ("sent", "/seen"), "c": ("request", "/oracle"), "a": ("response", "/oracle")}
 INTERFACE = {"publisher": {"/told": "x/msg/Y"}, "subscription": {"/seen": "x/msg/Y"}}
 
 
-@pytest.mark.parametrize(
-    ("events", "key"),
-    [
-        ("iciacaiciaca", "one_at_a_time"),
-        ("iciiacaca", "one_at_a_time"),
-        ("icicaaica", "never_published"),  # each at once
-        ("iciaicica", "never_published"),  # an input is passed over while a call is open
-        ("icaiciaca", "never_published"),  # one alone may be slow by chance
-        ("icicaiacica", "never_published"),  # two calls at once
-    ],
-)
+@pytest.mark.parametrize(("events", "key"), cases(__file__, "calls_that_wait_for_one_another"))
 def test_calls_that_wait_for_one_another(events: str, key: str) -> None:
     noted = Event(0.0, "noted", "/told", {"step": 0, "given": "", "values": []})
     due = Event(0.0, "noted", "/told", {"step": 0, "given": "", "values": [["yes"]]})

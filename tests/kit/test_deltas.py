@@ -124,21 +124,7 @@ NUMBERS = [1.0, -2.0, 0.5, 3.0, -1.0]
 @pytest.mark.parametrize(
     ("seen", "due", "text"),
     [
-        (
-            ["far"] * 5,
-            ["far", "near", "far", "near", "near"],
-            "What your node says on /said is always “far”.",
-        ),
-        (
-            ["far", "odd", "far", "odd", "far"],
-            ["far", "near", "far", "near", "far"],
-            "What your node says on /said is never “near”, but “odd”.",
-        ),
-        (
-            ["near", "far", "near", "far", "up"],
-            ["far", "near", "far", "near", "up"],
-            "What your node says on /said is “far” where “near” is due, and the other way round.",
-        ),
+        *cases(__file__, "one_sentence_says_how_a_whole_output_differs"),
         ([-one for one in NUMBERS], NUMBERS, "What your node says on /said has the wrong sign."),
         ([abs(one) for one in NUMBERS], NUMBERS, "What your node says on /said has lost its sign."),
         ([2 * one for one in NUMBERS], NUMBERS, "What your node says on /said is 2 times what is due."),
@@ -152,14 +138,14 @@ NUMBERS = [1.0, -2.0, 0.5, 3.0, -1.0]
             NUMBERS,
             "What your node says on /said is right at first, and then always 7.",
         ),
-        (["far", "near", "near", "far", "far"], ["far", "far", "near", "near", "far"], ""),
         (["far", None, "near"], ["far", "near", "near"], ""),
         (
             ["far", "near", None, None, "up"],
             ["far", "near", "far", "near", "up"],
             "A message that your node has said on /said once, it never says again.",
         ),
-        (["far", None, "near", None], ["far", "far", "near", "near"], ""),  # says what is new
+        # says what is new
+        (["far", None, "near", None], ["far", "far", "near", "near"], ""),
     ],
 )
 def test_one_sentence_says_how_a_whole_output_differs(seen: list[Any], due: list[Any], text: str) -> None:

@@ -43,28 +43,8 @@ RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
 @pytest.mark.parametrize(
     ("path", "came", "asked", "given", "says"),
     [
-        ("data", [["a"], ["b", "b", "b"]], [["a"], ["b"]], (), "says the same 3 times, and it is due once"),
-        ("success", [[True], [False]], [[True], [True]], [True, False], "what the request asks for"),
-        ("data", [["std_msgs.msg.Int32(data=7): x"]], [["7: x"]], (), "a whole message in it"),
-        ("data", [["error json is wrong"]], [["error: json"]], (), "“:” is missing"),
-        ("data", [["text; x is nan"]], [["text; error: x"]], (), "“error: ” is missing"),
-        ("data", [["I am there"]], [["there"]], (), "“I am ” is too much"),
-        (
-            "data",
-            [["11: far"], ["50: far"]],
-            [["11: far"], ["11: far"]],
-            [11, 50],
-            "says 50, which came last, where 11",
-        ),
-        ("status", [["CANCELED, long after the request"]], [["CANCELED"]], (), "agrees to cancel the goal"),
+        *cases(__file__, "what_the_first_wrong_values_show_is_said"),
         ("left", *RISES, (), "the task asks for numbers that go down"),
-        (
-            "data",
-            [["a", "b", "c"]],
-            [["a", "b", "c", "d"]],
-            (),
-            "sends 3 messages on /said, which are right, and then gives up; 4",
-        ),
     ],
 )
 def test_what_the_first_wrong_values_show_is_said(
@@ -79,24 +59,10 @@ def test_what_the_first_wrong_values_show_is_said(
 @pytest.mark.parametrize(
     ("path", "came", "asked", "given"),
     [
-        ("data", [["b", "c"]], [["b"]], ()),
-        (
-            "success",
-            [[False], [False]],
-            [[True], [True]],
-            [True, False],
-        ),  # always false, and not the request's data
-        ("data", [["near"]], [["far"]], ()),
-        ("data", [["50: far"], ["50: far"]], [["11: far"], ["11: far"]], [11, 11]),
-        ("data", [["10 m"]], [["0 m"]], ()),  # another number
-        (
-            "data",
-            [["near"], ["not near"]],
-            [["not near"], ["near"]],
-            (),
-        ),  # said elsewhere, so no slip of the pen
+        *cases(__file__, "values_that_show_nothing_are_only_shown"),
         ("left", RISES[1], [[[3, 2, 2]]], ()),
-        ("data", [["a", "b", "c"], list("abcd")], [list("abcd"), list("abcd")], ()),  # more come another time
+        # more come another time
+        ("data", [["a", "b", "c"], list("abcd")], [list("abcd"), list("abcd")], ()),
     ],
 )
 def test_values_that_show_nothing_are_only_shown(

@@ -15,6 +15,7 @@ from autograder.kit.mistakes.package_mistakes import EntryPoint
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.recipes.programs import LabProgram, Programs
 from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
@@ -167,12 +168,7 @@ ENTRY = "talker = my_robot_pkg.talker:main"
 
 @pytest.mark.parametrize(
     ("module", "programs", "installed", "lost"),
-    [
-        ("simple_node", (ENTRY,), ("talker",), True),
-        ("simple_node", (ENTRY,), ("simple_node", "talker"), False),
-        ("simple_node", (ENTRY, "hello = my_robot_pkg.simple_node:main"), ("hello", "talker"), False),
-        ("talker", (ENTRY,), (), False),
-    ],
+    cases(__file__, "an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it"),
 )
 def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
     module: str, programs: tuple[str, ...], installed: tuple[str, ...], lost: bool
@@ -183,13 +179,7 @@ def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
 
 
 @pytest.mark.parametrize(
-    ("modules", "programs", "wrong"),
-    [
-        (("my_robot_pkg/talker.py",), (ENTRY,), ""),
-        (("nodes/talker.py",), (ENTRY,), "src/my_robot_pkg/nodes/talker.py"),
-        (("nodes/talker.py",), ("talker = nodes.talker:main",), ""),
-        (("my_robot_pkg/chatting.py",), (ENTRY,), ""),
-    ],
+    ("modules", "programs", "wrong"), cases(__file__, "a_file_in_another_folder_is_found")
 )
 def test_a_file_in_another_folder_is_found(
     modules: tuple[str, ...], programs: tuple[str, ...], wrong: str

@@ -129,14 +129,11 @@ NOA_SAID = "{'robot': 'noa', 'topic': '/noa/drive'}"
 @pytest.mark.parametrize(
     ("first", "second", "points", "key"),
     [
-        ([SAID], [NOA_SAID], 10, ""),
+        *cases(__file__, "an_answer_has_to_be_right_for_each_robot"),
         ([SAID], None, 0, ""),
-        ([SAID], [SAID], 0, "invented_answer"),
         ([SAID], [NOA_SAID.replace("'noa'", "'/mia'")], 5, "invented_answer"),
         ([SAID], [NOA_SAID.replace("'noa'", "'/rosout'")], 5, ""),
         ([SAID], [NOA_SAID.replace("'topic'", "'name'")], 5, "no_answer"),
-        ([], [], 0, "not_written"),
-        ([SAID], ["no idea"], 0, "no_answer"),
     ],
 )
 def test_an_answer_has_to_be_right_for_each_robot(

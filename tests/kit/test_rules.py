@@ -7,17 +7,14 @@ from typing import Any
 import pytest
 
 from autograder.kit.rules import same, value_of
+from tests.cases import cases
 
 
 @pytest.mark.parametrize(
     ("made", "due", "passes"),
     [
-        (0.1 + 0.2, 0.3, True),
-        (0.31, 0.3, False),
-        ({"x": 0.1 + 0.2, "name": "a"}, {"x": 0.3, "name": "a"}, True),
-        ({"x": 0.3}, 0.3, False),
+        *cases(__file__, "contents_are_the_same_but_for_what_rounding_takes"),
         (2**62 + 1, 2**62, False),
-        ("a", 0.3, False),
         (10**400, 0.3, False),
         (0.3, -(10**400), False),
         (float("nan"), 10**400, False),

@@ -29,15 +29,7 @@ def test_what_was_untrue_is_said_as_it_is(lab: str, untrue: str, true: str) -> N
 @pytest.mark.parametrize(
     ("lab", "words"),
     [
-        ("00_nervous_system", "inter-process communication*, IPC"),
-        ("00_nervous_system", "`docs/learning-outcomes.md`"),
-        ("quiz", "**inter-process communication (IPC)**"),
-        ("quiz", "| | how many | preemptable | examples |"),
-        ("summary", "`docs/learning-outcomes.md`"),
-        ("summary", "*Bridging Python Agents to ROS 2*"),
-        ("summary", 'check("summary.patrol", Patrol)'),
-        ("exercise_1_1", 'check("exercise_1_1.package", "ros2_ws")'),
-        ("inspecting_actions", "`on_result` may end it with `rclpy.shutdown()`"),
+        *cases(__file__, "what_a_reader_looks_for_is_there"),
         *((lab, "robot = start_robot()") for lab in ("exercise_1_1", "exercise_1_2", "exercise_1_3")),
     ],
 )

@@ -9,6 +9,7 @@ from autograder.authoring.mutants.code import Code
 from autograder.authoring.mutants.equivalents import equivalent
 from autograder.authoring.mutants.solutions import Solution
 from autograder.authoring.mutants.survey import own_mutants
+from tests.cases import cases
 
 AGENT = """class Agent(Node):
     def __init__(self):
@@ -62,23 +63,7 @@ def test_what_does_the_same_is_set_aside(operator: str, before: str, kind: str, 
     assert reasons(operator, before, kind) == {reason}
 
 
-@pytest.mark.parametrize(
-    ("operator", "before", "kind"),
-    [
-        (
-            "comparison",
-            ">",
-            "",
-        ),  # of a whole number; the other two are of 1.1, and of two numbers that are drawn
-        ("elif_as_if", "elif", ""),
-        ("operand_left_out", "not self.turn and seen.ahead < 0.6", ""),
-        ("remembered", "self.came_at is None", "once true"),
-        ("kept", "self.seen = scan.ranges[0]", "largest"),
-        ("doubled", 'self.create_subscription(Scan, "b", self.decide, 10)', ""),
-        ("condition", "seen.left > seen.right", "turned"),
-        ("turned", "<", ""),
-    ],
-)
+@pytest.mark.parametrize(("operator", "before", "kind"), cases(__file__, "what_may_differ_is_not"))
 def test_what_may_differ_is_not(operator: str, before: str, kind: str) -> None:
     assert "" in reasons(operator, before, kind)
 

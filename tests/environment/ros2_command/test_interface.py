@@ -17,14 +17,10 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("line", "nested"),
     [
+        *cases(__file__, "nested_types_are_recognized"),
         ("int32 order", None),
         ("int32[] sequence", None),
         ("string<=10 name", None),
-        ("Point position", "geometry_msgs/msg/Point"),
-        ("Point[3] corners", "geometry_msgs/msg/Point"),
-        ("geometry_msgs/Point[<=4] corners  # up to four", "geometry_msgs/msg/Point"),
-        ("std_msgs/msg/Header header", "std_msgs/msg/Header"),
-        ("Header header", "std_msgs/msg/Header"),
         ("uint8 OK=0", None),
         ("float64 x 1.5", None),
         ("# Point position", None),

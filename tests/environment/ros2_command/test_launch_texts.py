@@ -118,13 +118,10 @@ def test_wrong_yaml_is_named(text: str, error: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("outer", "inner", "full"),
     [
+        *cases(__file__, "namespaces"),
         (None, None, None),
         (None, "a", "/a"),
         ("/a", None, "/a"),
-        ("/a", "b", "/a/b"),
-        ("/a", "/b/", "/b"),
-        ("/", "b", "/b"),
-        ("/a", "/", "/"),
     ],
 )
 def test_namespaces(outer: str | None, inner: str | None, full: str | None) -> None:
