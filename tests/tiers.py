@@ -39,6 +39,10 @@ NIGHTLY = (
     "tests/measure/test_run_all.py::test_what_can_be_run_again_and_what_cannot",
     "tests/mutation/test_mutation.py::test_every_operator_makes_something",
     "tests/mutation/test_mutation.py::test_no_two_mutants_mean_the_same_and_none_means_the_original",
+    # All mutants of all right answers, 24,000: that each has an id, a row of the table its mutant, a sample its share.
+    "tests/mutation/test_mutation.py::test_ids_are_unique_and_every_exercise_has_its_mutants",
+    "tests/mutation/test_mutation.py::test_every_equivalent_is_still_made",
+    "tests/mutation/test_mutation.py::test_a_sample_is_the_same_each_time_and_takes_from_every_exercise",
     "tests/benchmarks/test_short_run.py",
     "tests/measure/test_compare.py::test_two_commits_are_judged_each_by_its_own_judge",
     "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
@@ -71,6 +75,8 @@ NIGHTLY = (
     "tests/authoring/test_new_exercise.py::test_a_point_for_what_is_given_is_found",
     "tests/authoring/test_new_exercise.py::test_each_recipe_makes_a_lab_that_is_recorded_built_and_executed",
     "tests/authoring/test_new_exercise.py::test_what_is_expected_does_not_change_unasked",
+    # The example with the most mutants, as long as the others together; one of the others is tried in both tiers.
+    "tests/authoring/test_new_exercise.py::test_an_example_is_in_step_and_judged_as_its_author_expects[oracle]",
     "tests/test_second_chapter.py",
     "tests/test_wheel.py::test_an_exercise",
     "tests/test_adding_an_exercise.py::test_the_page_does_what_it_says",

@@ -168,11 +168,16 @@ def _labs() -> frozenset[str]:
     return frozenset(exercise_id.partition(".")[0] for exercise_id in exercises.all_ids())
 
 
+@functools.cache
+def _course() -> str:
+    return str(course.root())  # which looks at the disk
+
+
 def _word(value: Any) -> str:
     if isinstance(value, (set, frozenset)):
         return str(sorted(map(_word, value)))
     if isinstance(value, str):
-        return repr(value.replace(str(course.root()), "/course"))
+        return repr(value.replace(_course(), "/course"))
     if value is None or isinstance(value, (bytes, int, float)):
         return repr(value)
     name = getattr(value, "__qualname__", type(value).__qualname__)
