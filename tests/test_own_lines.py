@@ -24,15 +24,7 @@ from tests.cases import cases
 if TYPE_CHECKING:
     from pathlib import Path
 
-TALKER = """class Talker(Node):
-    def __init__(self):
-        self.timer = self.create_timer(
-            5.0, self.tick)
-
-    def tick(self):
-        if self.ready():
-            self.publisher.publish(message)
-"""
+TALKER = cases(__file__, "TALKER")
 
 
 def lines(name: str, **sources: str) -> list[tuple[str, int, str]]:

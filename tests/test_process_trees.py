@@ -57,17 +57,7 @@ def test_a_daemon_does_not_outlive_the_submission() -> None:
     assert result.stdout.split() == ["1", "gone"]
 
 
-SPARED = """
-import subprocess
-from autograder.process_trees import adopt_orphans, end_descendants
-adopt_orphans()
-helper = subprocess.Popen(["sh", "-c", "sleep 600 & echo $!; wait"], stdout=subprocess.PIPE)
-below = int(helper.stdout.readline())
-other = subprocess.Popen(["sleep", "600"])
-print(end_descendants(spare=[helper.pid]), other.poll() is not None, helper.poll() is None)
-print(open(f"/proc/{below}/comm").read().strip())
-print(end_descendants())
-"""
+SPARED = cases(__file__, "SPARED")
 
 
 def test_a_helper_and_what_is_below_it_are_spared() -> None:
@@ -105,17 +95,7 @@ def test_processes_that_are_ended_one_by_one_do_not_end_at_once() -> None:
         os.close(descriptor)
 
 
-MANY_FILES = """
-import os, resource, subprocess, sys
-from autograder.process_trees import kill, known
-_, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 2000), hard))
-sleeper = subprocess.Popen(["sleep", "600"])
-for _ in range(1100):
-    os.dup(0)
-kill(known([sleeper.pid]))
-print(sleeper.wait(60.0))
-"""
+MANY_FILES = cases(__file__, "MANY_FILES")
 
 
 def test_who_has_many_files_open_can_end_a_process() -> None:
@@ -125,19 +105,7 @@ def test_who_has_many_files_open_can_end_a_process() -> None:
     assert done.stdout.split() == ["-9"]
 
 
-ENTERED = """
-import os, subprocess, time
-from autograder.process_trees import adopt_orphans, descendants, end_below
-adopt_orphans()
-def started(*command):
-    process = subprocess.Popen([*command, "sleep", "600"])
-    while not (below := descendants(process.pid)):
-        time.sleep(0.01)
-    return below[0]
-first = started(*UNSHARE)
-started("nsenter", "--user", "--preserve-credentials", "--pid", "--target", str(first))
-end_below(os.getpid())
-"""
+ENTERED = cases(__file__, "ENTERED")
 UNSHARE = ("unshare", "--user", "--map-root-user", "--pid", "--fork")
 
 

@@ -12,16 +12,9 @@ from typing import Any
 import pytest
 
 from autograder.safe_files import HeldFolder, UnsafeTemporaryFolder, fresh_folder, write_whole
+from tests.cases import cases
 
-MAKER = """
-import sys, tempfile
-tempfile.tempdir = sys.argv[1]
-from autograder.safe_files import HeldFolder
-folder = HeldFolder("held-")
-(folder.path / "socket").touch()
-print(folder.path, flush=True)
-sys.stdin.read()
-"""
+MAKER = cases(__file__, "MAKER")
 
 
 @pytest.fixture

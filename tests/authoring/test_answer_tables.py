@@ -7,24 +7,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.authoring.answer_tables import BadTable, answer_settings, listed_answers
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 RIGHT = '"""Right: counts."""\ni = 0\nwhile True:\n    print(i)\n    i += 1\n'
 WHOLE = '"usual.py" = { why = "counts" }\n'
-EDIT = """
-["counter_start.py"]
-diagnosis = "counter_start"
-why = "1, 2, 3"
-base = "usual.py"
-shows = "Wrong: counts from 1."
-change = '''
--i = 0
-+i = 1
-'''
-"""
+EDIT = cases(__file__, "EDIT")
 
 
 @pytest.fixture

@@ -5,21 +5,9 @@ from __future__ import annotations
 import pytest
 
 from autograder.authoring.answer_tables import CannotEdit, edited_text
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
-BASE = """import rclpy
-
-def main():
-    rclpy.init()
-    node = make()
-    try:
-        rclpy.spin(node)
-    finally:
-        rclpy.shutdown()
-
-def again():
-    rclpy.init()
-"""
+BASE = cases(__file__, "BASE")
 
 
 @pytest.mark.parametrize(("change", "old", "new"), named_cases(__file__, "a_change_is_made"))

@@ -26,17 +26,7 @@ What is one divided by it?
 ```
 """
 """With the solution it works; the stub returns 0, and the cell below it does not cope with that."""
-SHOWS_A_TRACEBACK = """
-Say what went wrong:
-
-```{code-cell} ipython3
-import traceback
-try:
-    None.data
-except AttributeError:
-    print(traceback.format_exc())
-```
-"""
+SHOWS_A_TRACEBACK = cases(__file__, "SHOWS_A_TRACEBACK")
 WRITES_TO_STANDARD_ERROR = """
 Complain:
 

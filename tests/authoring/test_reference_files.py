@@ -14,6 +14,7 @@ from autograder import exercises
 from autograder.authoring import reference_files
 from autograder.kit.recipes.own_scenario import Met
 from autograder.verdict import CriterionResult
+from tests.cases import cases
 from tests.copies import copied
 from tests.measure import evidence
 from tests.tiers import due
@@ -32,17 +33,7 @@ EXERCISES = [
     for exercise_id in exercises.all_ids()
     if exercise_id != LAUNCHED
 ]
-TALKER = """
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("talker")
-publisher = node.create_publisher(String, "{topic}", 10)
-count = iter(range(1000))
-node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello, world! {{next(count)}}")))
-rclpy.spin(node)
-"""
+TALKER = cases(__file__, "TALKER")
 
 
 def _autograder(*words: str) -> subprocess.CompletedProcess[str]:

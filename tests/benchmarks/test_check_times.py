@@ -8,18 +8,9 @@ import pytest
 
 from autograder import exercises
 from benchmarks.check_times import definitions, subjects
+from tests.cases import cases
 
-PROGRAM = """
-import rclpy
-LARGEST = 46
-node = rclpy.create_node("n")
-
-def main():
-    print(LARGEST)
-
-if __name__ == "__main__":
-    main()
-"""
+PROGRAM = cases(__file__, "PROGRAM")
 
 
 def test_a_cell_keeps_what_a_program_defines_and_runs_nothing_of_it() -> None:

@@ -31,6 +31,7 @@ from autograder.grading.returning.page_exporter import markdown_to_html
 from autograder.grading.returning.picture_sizes import PixelBudget
 from autograder.grading.returning.sanitize import TYPED, as_typed
 from autograder.grading.running import execution_backends
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -109,18 +110,7 @@ SETTLE = """async () => {
 }"""
 
 # What waits for a click, and what lies over the rest of the page, below an element.
-LOOK = """root => {
-  const found = [];
-  const odd = /^(?!https?:|mailto:|file:|about:|#)/i;
-  for (const e of document.querySelectorAll(`${root} *`)) {
-    const animated = e.localName === 'animate' && /javascript:/i.test(e.getAttribute('values'));
-    const targets = [e.href, e.action, e.formAction].filter(t => typeof t === 'string' && t);
-    if (animated || targets.some(t => odd.test(t))) found.push('waits');
-    if (['fixed', 'absolute', 'sticky'].includes(getComputedStyle(e).position)) found.push('covers');
-    for (const a of e.getAttributeNames()) if (/^on/i.test(a)) found.push('waits');
-  }
-  return found;
-}"""
+LOOK = cases(__file__, "LOOK")
 
 
 @pytest.fixture

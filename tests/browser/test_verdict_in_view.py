@@ -12,6 +12,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look, until
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
@@ -27,17 +29,7 @@ VIEW = """card => {
     return [inView(".agc-head"), inView(".agc-score"), inView(".agc-advice > p")];
 }"""
 
-OVERLAPS = """() => [...document.querySelectorAll(".notebook:has(.reset)")].flatMap(row => {
-    const button = row.querySelector(".reset").getBoundingClientRect();
-    const isBelow = box => box.left < button.right && box.right > button.left
-        && box.top < button.bottom && box.bottom > button.top;
-    const words = [...row.querySelectorAll(".title, .facts span, .exercises li, .exercises span")];
-    return words.filter(one => {
-        const range = document.createRange();
-        range.selectNodeContents(one);
-        return [...range.getClientRects()].some(isBelow);
-    }).map(one => one.textContent);
-})"""
+OVERLAPS = cases(__file__, "OVERLAPS")
 """The words on the course page that a reset button lies on."""
 HANGS = """
 class TalkerNode(Node):

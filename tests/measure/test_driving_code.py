@@ -15,73 +15,7 @@ from tests.measure.stimulus import without_texts
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCENARIO = """
-import contextlib
-from dataclasses import dataclass
-
-WAIT, OTHER = 1.5, 2.5
-KINDS = {"first": (lambda: 11)}
-
-class TooLate(Exception):
-    pass
-
-class Finding:
-    def __init__(self, passed, seen):
-        self.passed = passed
-
-@dataclass
-class Turn:
-    number: int = 21
-
-    @property
-    def pace(self):
-        return 31
-
-    def in_words(self):
-        return "the turn"
-
-class Base:
-    def drive(self):
-        return "base"
-
-class Times:
-    def __init__(self):
-        self.pace = 3.5
-
-class Recipe(Base):
-    def __init__(self):
-        self.times = Times()
-
-    def drive(self):
-        "Said well."
-        return super().drive(), self.times.pace
-
-    def judges(self):
-        return "not asked"
-
-recipe = Recipe()
-
-@contextlib.contextmanager
-def held():
-    yield 4.5
-
-@print
-def criterion():
-    return "what is said"
-
-def too_late(seconds: float):
-    import math
-    if seconds > 41:
-        raise TooLate(f"it took {seconds} s", 51)
-
-def holds():
-    return Finding(61 < 62, "seen on the card")
-
-def scenario():
-    with held():
-        too_late(7)
-        return WAIT, recipe.drive(), KINDS, Turn().number, holds().passed  # why
-"""
+SCENARIO = cases(__file__, "SCENARIO")
 
 
 def reached(text: str, folder: Path, module_name: str = "autograder.kit.made_up") -> list[str]:

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from autograder.messages import json_lines, judge_messages, run_messages, workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, Silent, TooLong
+from tests.cases import cases
 from tests.drawn import drawn
 
 
@@ -162,15 +163,7 @@ def test_who_says_nothing_more_still_hears() -> None:
     assert near.hear_json(10.0) == b"{}"
 
 
-CHILD = """
-import subprocess
-from autograder.messages.json_lines import Lines
-parent = Lines.with_parent()
-child = subprocess.Popen(["sleep", "600"])
-print("printed lines are not said")
-parent.say_json(str(child.pid).encode())
-parent.hear_json()
-"""
+CHILD = cases(__file__, "CHILD")
 
 
 def test_a_child_of_a_process_does_not_hold_its_conversation_open() -> None:

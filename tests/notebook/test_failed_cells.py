@@ -7,21 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 # A judge that is reached has said enough.
-JUDGE = """
-import importlib
-from autograder.notebook import check
-checking = importlib.import_module("autograder.notebook.checking.check")
-
-class Link:
-    def __init__(self):
-        raise checking.JudgeUnreachable("the judge was asked")
-
-checking.JudgeLink = Link
-"""
+JUDGE = cases(__file__, "JUDGE")
 RIGHT = "class Talker:\n    pass"
 CHECK = "check('lab', Talker)"
 

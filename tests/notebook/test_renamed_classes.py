@@ -7,21 +7,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from .conftest import CellOutput, Notebook
 
 # A judge that is reached has said enough: the check has 0.0 points then.
-JUDGE = """
-import importlib
-from autograder.notebook import check
-checking = importlib.import_module("autograder.notebook.checking.check")
-
-class Link:
-    def __init__(self):
-        raise checking.JudgeUnreachable("the judge was asked")
-
-checking.JudgeLink = Link
-"""
+JUDGE = cases(__file__, "JUDGE")
 _numbers = count()
 
 

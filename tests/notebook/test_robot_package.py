@@ -9,21 +9,12 @@ import pytest
 
 from autograder import course
 from autograder.notebook.robot_package import complete_package
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-SETUP = """\
-from setuptools import setup
-
-setup(
-    name="my_robot_pkg",
-    entry_points={
-        'console_scripts': [
-%s        ],
-    },
-)
-"""
+SETUP = cases(__file__, "SETUP")
 
 
 @pytest.fixture

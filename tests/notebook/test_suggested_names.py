@@ -7,15 +7,7 @@ import pytest
 from autograder.notebook.checking.subject_runs import student_traceback
 from tests.cases import cases
 
-CELL = """
-class Driver:
-    def __init__(self):
-        self.publisher = print
-
-    def drive(self):
-        command = 1
-        {line}
-"""
+CELL = cases(__file__, "CELL")
 
 
 @pytest.mark.parametrize(("line", "end"), cases(__file__, "the_name_that_was_meant_is_said"))

@@ -11,27 +11,7 @@ from autograder.authoring.mutants.code import Code, Edit
 from autograder.authoring.mutants.engine import Mutant, in_all_places, mutants, python_changes
 from tests.cases import cases
 
-HANDS = '''"""Hands."""
-
-
-class Hands:
-    def __init__(self):
-        self.last = None
-        self.create_subscription(Twist, "agent", self.limited, 10)
-
-    def limited(self, command, seen):
-        safe = Twist()
-        safe.linear.x = max(-0.5, min(0.5, command.linear.x))
-        safe.angular.z = max(-0.5, min(0.5, command.angular.z))
-        self.last = command
-        now = self.get_clock().now()
-        limit = self.get_parameter("limit").value
-        if seen.left > seen.right and seen.ahead[0] < limit:
-            self.publisher.publish(safe)
-        elif seen.left == seen.right:
-            threading.Thread(target=self.act, args=(now,)).start()
-        return "left" if seen.left > 1.5 else "right"
-'''
+HANDS = cases(__file__, "HANDS")
 
 
 def made(text: str = HANDS) -> list[Mutant]:

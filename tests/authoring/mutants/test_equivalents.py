@@ -11,30 +11,7 @@ from autograder.authoring.mutants.solutions import Solution
 from autograder.authoring.mutants.survey import own_mutants
 from tests.cases import cases
 
-AGENT = """class Agent(Node):
-    def __init__(self):
-        super().__init__("agent")
-        self.turn = 0.0
-        self.came_at = None
-        self.seen = 0.0
-        self.create_subscription(Scan, "a", self.on_scan, 10)
-        self.create_subscription(Scan, "b", self.decide, 10)
-
-    def on_scan(self, scan):
-        self.seen = scan.ranges[0]
-        self.came_at = self.get_clock().now()
-
-    def decide(self, seen):
-        if self.came_at is None:
-            return "nothing"
-        if self.turn and seen.ahead > 1.1:
-            self.turn = 0.0
-        elif not self.turn and seen.ahead < 0.6:
-            self.turn = 1.0 if seen.left > seen.right else -1.0
-        if seen.count > 4:
-            return max(0.0, min(1.0, self.turn))
-        return "old" if self.get_clock().now() - self.came_at < Duration(seconds=1) else "fresh"
-"""
+AGENT = cases(__file__, "AGENT")
 SOLUTION = Solution("a.agent", AGENT, "Agent", ((0, len(AGENT)),))
 
 

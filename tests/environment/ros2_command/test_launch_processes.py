@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     import subprocess
@@ -22,16 +22,7 @@ if TYPE_CHECKING:
     Ros2 = Callable[..., subprocess.CompletedProcess[str]]
     Start = Callable[..., Running]
 
-HEAD = """\
-from launch import LaunchDescription
-from launch.actions import *
-from launch.event_handlers import *
-from launch.substitutions import *
-from launch_ros.actions import Node
-
-def generate_launch_description():
-    return LaunchDescription([
-"""
+HEAD = cases(__file__, "HEAD")
 STUBBORN = "['sh', '-c', 'trap \"\" INT; echo up; while :; do sleep 0.05; done']"
 
 

@@ -58,19 +58,7 @@ def test_sigterm_ends_the_program_too(start: Callable[..., Running]) -> None:
     assert not running._reader.is_alive()
 
 
-CTRL_C_AT_THE_START = """
-import os, signal, subprocess, sys
-from course_runtime.ros2_command import main, run
-
-def start(command):
-    process = subprocess.Popen(command)
-    os.kill(os.getpid(), signal.SIGINT)
-    return process
-
-run.start = start
-sys.argv = ["ros2", "run", "demo_pkg", "says", "0"]
-sys.exit(main.main())
-"""
+CTRL_C_AT_THE_START = cases(__file__, "CTRL_C_AT_THE_START")
 
 
 def test_ctrl_c_is_left_to_the_program_from_its_start_on(env: dict[str, str]) -> None:

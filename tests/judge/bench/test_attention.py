@@ -8,6 +8,7 @@ import pytest
 
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.reported_texts import is_said
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,16 +23,7 @@ pytestmark = pytest.mark.ros
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 TIMES = 5
 """Without the wait about every second text was lost."""
-BEST_EFFORT_LISTENER = """
-import rclpy
-from rclpy.qos import qos_profile_sensor_data
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("listener")
-node.create_subscription(String, "chatter", lambda msg: print(msg.data, flush=True), qos_profile_sensor_data)
-rclpy.spin(node)
-"""
+BEST_EFFORT_LISTENER = cases(__file__, "BEST_EFFORT_LISTENER")
 
 
 def test_a_best_effort_listener_hears_the_first_text_of_a_publisher_it_meets_last(bench_of: BenchOf) -> None:

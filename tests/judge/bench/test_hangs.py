@@ -9,23 +9,14 @@ import pytest
 from autograder.judge.bench.subject_time import Unanswered
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Reference
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     from conftest import BenchOf
 
 pytestmark = pytest.mark.ros
 
-NODE = """
-import time
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("subject")
-node.create_subscription(String, "/chatter", lambda heard: {does}, 10)
-{spins}
-"""
+NODE = cases(__file__, "NODE")
 REFERENCE = Reference("lab.listener", {"subscription": {"/chatter": "std_msgs/msg/String"}})
 
 

@@ -10,6 +10,7 @@ from autograder.judge.bench.ros_interfaces import MisfitError
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Reference
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,26 +21,8 @@ pytestmark = pytest.mark.ros
 POINT, NUMBER = "geometry_msgs/msg/Point", "std_msgs/msg/Float64"
 ADD, FIBONACCI = "my_robot_interfaces/srv/AddTwoInts", "my_robot_interfaces/action/Fibonacci"
 ENDS = {"subscription": {"/point": POINT}, "publisher": {"/sum": NUMBER}}
-ADDER = """
-import rclpy
-from geometry_msgs.msg import Point
-from std_msgs.msg import Float64
-rclpy.init()
-node = rclpy.create_node('adder')
-sums = node.create_publisher(Float64, 'sum', 10)
-node.create_subscription(Point, 'point', lambda p: sums.publish(Float64(data=p.x + p.y + p.z)), 10)
-rclpy.spin(node)
-"""
-CALLER = """
-import rclpy
-from my_robot_interfaces.srv import AddTwoInts
-rclpy.init()
-node = rclpy.create_node('caller')
-client = node.create_client(AddTwoInts, 'add')
-client.wait_for_service()
-client.call_async(AddTwoInts.Request(a=1, b=2))
-rclpy.spin(node)
-"""
+ADDER = cases(__file__, "ADDER")
+CALLER = cases(__file__, "CALLER")
 
 
 def told(bench_of: BenchOf, steps: Sequence[To | Sets]) -> list[Any]:

@@ -10,24 +10,14 @@ from autograder.judge.bench.qos_profiles import profile, qos_of
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Evidence, Part, Reference
 from autograder.kit.mistakes.common_mistakes import qos_mismatch
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from conftest import BenchOf
 
 TEXT = "std_msgs/msg/String"
 REFERENCE = Reference("a test", {"subscription": {"/scan": TEXT}, "publisher": {"/map": TEXT}})
-SUBJECT = """
-import rclpy
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("subject")
-node.create_subscription(String, "scan", lambda message: print(message.data, flush=True), {scan})
-maps = node.create_publisher(String, "map", {map})
-maps.publish(String(data="a map"))
-rclpy.spin(node)
-"""
+SUBJECT = cases(__file__, "SUBJECT")
 SENSOR = "qos_profile_sensor_data"
 LATCHED = "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)"
 

@@ -22,6 +22,7 @@ from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_time import FIRST, NodeClock, SimulatedClock
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Reference
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -201,17 +202,7 @@ def test_one_clock_steps_every_node_that_the_judge_meets(subject_node: SubjectNo
         assert [len(ticks) for ticks in fired.values()] == [4, 4]
 
 
-SLEEPER = """
-import time
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("subject")
-told = node.create_publisher(String, "told", 10)
-node.create_subscription(String, "ask", lambda message: (time.sleep(0.4), told.publish(message)), 10)
-rclpy.spin(node)
-"""
+SLEEPER = cases(__file__, "SLEEPER")
 """A program whose callback sleeps, which costs nothing while the judge's clock waits for it."""
 
 

@@ -10,22 +10,12 @@ import pytest
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence
 from autograder.kit.hunts.ticket import exercise_of
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-TICKET = """
-title = "Hunt · The silent talker"
-task = "The talker says hello."
-judged_by = "lab_1_2.talker"
-cause = "The topic was misspelt. ROS 2 does not report that."
-sooner = "The list of topics shows it."
-seen = "It happens: https://example.org/1"
-question = "Why?"
-right = "the name"
-choices = ["the type"]
-"""
+TICKET = cases(__file__, "TICKET")
 
 
 @pytest.fixture

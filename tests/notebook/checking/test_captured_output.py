@@ -278,25 +278,7 @@ def test_a_deep_stack_shows_both_ends_and_each_line_is_looked_up_once(
     assert 1 <= len(parsed) <= len(DEEP.splitlines())
 
 
-WAITS = """class Base:
-    end = 3.0
-    def __init__(self, over):
-        self.left, self.ahead, self.rest, self.wait = 1.0, 1.0, 1.0, over.wait
-        self.docked, self.ways, self.near = False, [1.0], True
-        def forget(): self.near = False
-        self.forget = forget
-    def look(self):
-        def done(): self.ahead = 0.0
-        return done
-class Dock(Base):
-    @property
-    def way(self): return self.rest
-    def done(self): self.rest = 0.0
-    def dock(self):
-        self.left, left, ways = 2.0, 2.0, [1.0]
-        while {condition}:
-            self.wait(0.05)
-"""
+WAITS = cases(__file__, "WAITS")
 
 
 @pytest.mark.parametrize(

@@ -7,18 +7,11 @@ import sys
 
 import pytest
 
+from tests.cases import cases
+
 pytestmark = pytest.mark.ros
 
-LEFT_AND_MADE_AGAIN = """
-import rclpy
-from autograder.notebook.checking.judge_link import CheckContext
-
-rclpy.init()
-with CheckContext(7, "_keeper") as place:
-    place.ensure(fresh=True)
-    left = rclpy.create_node("client")
-rclpy.create_node("client").get_logger().info("after the check")
-"""
+LEFT_AND_MADE_AGAIN = cases(__file__, "LEFT_AND_MADE_AGAIN")
 
 
 def test_a_node_that_was_left_does_not_spoil_the_log_of_a_later_one() -> None:

@@ -15,18 +15,11 @@ from autograder.notebook import spinning
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
 
+from tests.cases import cases
+
 pytestmark = pytest.mark.ros
 
-LATE_NEWS = """
-import threading
-from autograder.judge.bench.recorded_services import RecordedServer
-usual = RecordedServer.close
-def close(server):
-    # Nobody answers any more, but it is seen for another second.
-    server._service.callback = lambda *_: None
-    threading.Timer(1.0, usual, [server]).start()
-RecordedServer.close = close
-"""
+LATE_NEWS = cases(__file__, "LATE_NEWS")
 """The judge's services are seen for a second after the judge has taken them away."""
 
 

@@ -17,24 +17,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.ros
 
 MADE = cases(__file__, "MADE")
-WRONG = """
-wrong = (Fibonacci.Goal, Fibonacci.Goal(), Fibonacci.Result, Fibonacci.Feedback, AddTwoInts, AddTwoInts.Request, String)
-for kind in wrong:
-    for make in ways:
-        try:
-            make(kind)
-        except TypeError as error:
-            print(error)
-"""
-RIGHT = """
-class Own(Fibonacci):
-    pass
-
-for make in ways:
-    make(Fibonacci).destroy()
-    make(Own).destroy()
-print("made")
-"""
+WRONG = cases(__file__, "WRONG")
+RIGHT = cases(__file__, "RIGHT")
 
 
 def test_what_is_not_the_type_of_an_action_is_an_error_that_names_it(run_script: RunScript) -> None:

@@ -13,36 +13,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.ros
 
-BEGIN = """
-import linecache, sys, threading
-from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.task import Future
-from rclpy.wait_for_message import wait_for_message
-
-class Deaf(Node):
-    def __init__(self):
-        super().__init__("deaf")
-        self.heard = []
-        self.create_subscription(String, "silence", self.heard.append, 10)
-
-def say_when_it_waits():
-    main = threading.main_thread().ident
-    while True:
-        frame = sys._current_frames()[main]
-        if "wait_set.wait(" in linecache.getline(frame.f_code.co_filename, frame.f_lineno):
-            print("it waits", flush=True)
-            return
-        threading.Event().wait(0.001)
-
-def spin_in(executor, node):
-    executor.add_node(node)
-    try:
-        executor.spin()
-    finally:
-        executor.remove_node(node)
-
-node = Deaf()
-"""
+BEGIN = cases(__file__, "BEGIN")
 AFTERWARDS = """
 publisher = node.create_publisher(String, "silence", 10)
 publisher.publish(String(data="heard"))
