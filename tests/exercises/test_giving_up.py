@@ -9,7 +9,7 @@ from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
-from tests.cases import named_cases
+from tests.cases import cases, named_cases
 
 ASKED = Event(0.0, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
 ANSWERED = Event(0.0, "response", "/add_two_ints", {"fields": {"sum": 3}})
@@ -20,6 +20,10 @@ SEEN = Event(
     "graph",
     {"nodes": ["/client"], "client": {"/add_two_ints": "my_robot_interfaces/srv/AddTwoInts"}},
 )
+
+
+Lines = tuple[tuple[float, str], ...] | str
+"""What a program says and when, or its name in LINES."""
 
 
 def run(text: str, numbers: list[int], *, asked: bool = False) -> Part:
@@ -122,104 +126,16 @@ def _waits(
     return Part("", {"numbers": [1, 2], "patience_sec": told or 1.5}, events)
 
 
-EACH_SECOND = tuple((float(t), f"waiting, try {t}") for t in range(1, 12))
-GROWING_DOTS = tuple((float(t), f"waiting{'.' * t}") for t in range(0, 12, 4))
-TURNING_BAR = tuple((float(t), f"waiting {'|/-'[t // 4]}") for t in range(0, 12, 4))
-ABORTED = tuple(
-    (5.0, line)
-    for line in (
-        "terminate called without an active exception",
-        "Fatal Python error: Aborted",
-        "",
-        "Thread 0x00007fb7af88c4c0 (most recent call first):",
-        "  <no Python frame>",
-        "",
-        "Current thread's C stack trace (most recent call first):",
-        '  Binary file "/usr/bin/python3.14", at _Py_DumpStack+0x49 [0x5a1b2c]',
-        "  <truncated rest of calls>",
-        "",
-        "Extension modules: yaml._yaml, rclpy._rclpy_pybind11 (total: 2)",
-    )
-)
-SHUT_DOWN = tuple(
-    (5.0, line)
-    for line in (
-        "Exception in thread Thread-1 (spin):",
-        "Traceback (most recent call last):",
-        '  File "/usr/lib/python3.12/threading.py", line 1075, in _bootstrap_inner',
-        "    self.run()",
-        "rclpy.executors.ExternalShutdownException",
-    )
-)
-RAISED = (*SHUT_DOWN[1:4], (5.0, "RuntimeError: adder not available"))
-AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
+LINES = cases(__file__, "LINES")
+EACH_SECOND = LINES["each second"]
+LINES["at once"] = tuple((0.1 + t / 1000, "waiting") for t in range(200))
 
 
 @pytest.mark.parametrize(
-    ("part", "expected"),
-    [
-        pytest.param(_waits((5.0, "not available"), ends=5.0), "", id="ends and says why"),
-        pytest.param(_waits(ends=5.0), "it was not reported", id="ends silently"),
-        pytest.param(
-            _waits(*ABORTED, ends=5.0), "it was not reported", id="is aborted while a thread of it spins"
-        ),
-        pytest.param(
-            _waits(*SHUT_DOWN, ends=5.0),
-            "“rclpy.executors.ExternalShutdownException”",
-            id="a thread of it sees that ROS is shut down",
-        ),
-        pytest.param(_waits(*RAISED, ends=5.0), "", id="ends with an exception"),
-        pytest.param(_waits(*EACH_SECOND), "", id="says again and again that it waits"),
-        pytest.param(_waits(*GROWING_DOTS), "", id="says it with one dot more each time"),
-        pytest.param(_waits(*TURNING_BAR), "", id="says it beside a bar that turns"),
-        pytest.param(
-            _waits(*EACH_SECOND[4::5], (11.9, "waiting, try 3")), "", id="says so every five seconds"
-        ),
-        pytest.param(_waits((0.1, "waiting")), "still waiting after 12 s", id="says so once"),
-        pytest.param(
-            _waits((6.5, "waiting"), (7.5, "waiting"), (8.5, "waiting"), looks_at=5.5),
-            "still waiting after 12 s",
-            id="starts slowly on a busy machine and says so three times",
-        ),
-        pytest.param(
-            _waits(*((5.5 + t, "waiting") for t in range(12)), looks_at=5.5),
-            "",
-            id="starts slowly and says so on",
-        ),
-        pytest.param(
-            _waits(*AT_ONCE), "still waiting after 12 s", id="says so many times at once and never again"
-        ),
-        pytest.param(
-            _waits((0.1, "hello"), (3.0, "one moment"), (6.0, "so")),
-            "still waiting after 12 s",
-            id="says this and that",
-        ),
-        pytest.param(
-            _waits(*EACH_SECOND, told=1.5), "still waiting after 12 s", id="was told how long to wait"
-        ),
-        pytest.param(_waits((0.5, "not available"), told=0.35, ends=0.6), "", id="keeps a short patience"),
-        pytest.param(_waits((1.0, "not available"), told=0.2, ends=1.1), "", id="waits a whole second"),
-        pytest.param(
-            _waits((1.5, "not available"), told=0.37, ends=1.5),
-            "gave up after 1.5 s, although patience_sec was 0.37",
-            id="has a patience as long as a late server takes",
-        ),
-        pytest.param(_waits((2.9, "not available"), told=1.5, ends=2.9), "", id="is slow to end"),
-        pytest.param(
-            _waits((5.1, "not available"), told=1.5, ends=5.1),
-            "gave up after 5.1 s, although patience_sec was 1.5",
-            id="has a patience of its own",
-        ),
-        pytest.param(
-            _waits((0.1, "not available"), told=1.5, ends=0.1),
-            "gave up after 0.1 s, although patience_sec was 1.5",
-            id="does not wait at all",
-        ),
-        pytest.param(_waits((0.1, "not available"), ends=0.1), "", id="was not told how long"),
-    ],
+    ("lines", "how", "expected"), named_cases(__file__, "how_a_client_takes_it_that_nobody_serves")
 )
-def test_how_a_client_takes_it_that_nobody_serves(part: Part, expected: str) -> None:
-    assert objection(part) == expected
+def test_how_a_client_takes_it_that_nobody_serves(lines: Lines, how: dict[str, float], expected: str) -> None:
+    assert objection(_waits(*LINES.get(lines, lines), **how)) == expected
 
 
 @pytest.mark.parametrize("exercise_id", ["exercise_1_2.three_ints", "lab_1_3.client", "lab_1_4.client"])
@@ -244,38 +160,12 @@ def test_words_about_waiting_bring_a_point_only_to_what_was_a_client_of_somethin
     assert limit.judge(Evidence(parts, stored)).passed is is_client
 
 
-GREETING, GONE = (0.1, "asking for 1 + 2"), (5.0, "service not available")
-NAMELESS = (
-    (5.0, "Traceback (most recent call last):"),
-    (5.0, '  File "/home/student/client.py", line 9, in main'),
-    (5.0, "    print(future.result().sum)"),
-    (5.0, "AttributeError: 'NoneType' object has no attribute 'sum'"),
-)
-
-
 @pytest.mark.parametrize(
-    ("part", "expected"),
-    [
-        pytest.param(_waits(GREETING, GONE, ends=5.0), "", id="greets, and says why it ends"),
-        pytest.param(_waits(GREETING, ends=5.0), "“asking for 1 + 2”", id="greets only"),
-        pytest.param(_waits(GREETING, (5.0, "denied"), ends=5.0), "“denied”", id="another word"),
-        pytest.param(
-            _waits((0.1, "Not available?"), ends=5.0),
-            "“Not available?”, which your program also says in runs with another outcome",
-            id="says so in each run",
-        ),
-        pytest.param(
-            _waits((1.0, "Not available?"), (3.0, "Not available?"), ends=5.0),
-            "",
-            id="says it again and again",
-        ),
-        pytest.param(_waits((5.0, "None"), ends=5.0), "it was not reported", id="None"),
-        pytest.param(_waits((5.0, "0"), ends=5.0), "“0”", id="a bare number"),
-        pytest.param(_waits(*NAMELESS, ends=5.0), "it was not reported", id="a slip"),
-    ],
+    ("lines", "how", "expected"),
+    named_cases(__file__, "what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble"),
 )
 def test_what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble(
-    part: Part, expected: str
+    lines: Lines, how: dict[str, float], expected: str
 ) -> None:
     usual = _waits(
         (0.1, "asking for 1 + 2"),
@@ -284,7 +174,7 @@ def test_what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble(
         (0.6, "the sum is 3"),
         ends=0.7,
     )
-    assert objection(part, [usual]) == expected
+    assert objection(_waits(*LINES.get(lines, lines), **how), [usual]) == expected
 
 
 @pytest.mark.parametrize(
