@@ -16,7 +16,7 @@ from autograder.judge.timeline.verdict_timeline import moments
 from autograder.judge.verdicts.deciding import decide, misnamed
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
-from tests.cases import cases
+from tests.cases import cases, named_cases
 from tests.measure.evidence import kept, record_of
 
 if TYPE_CHECKING:
@@ -39,27 +39,7 @@ FAILED = Verdict(
 
 
 @pytest.mark.parametrize(
-    ("asked", "runs", "real"),
-    [
-        pytest.param({"/chatter": STRING}, [{"/chater": STRING}], "/chater", id="one other"),
-        pytest.param(
-            {"/chatter": STRING}, [{}, {"/chater": STRING}], "/chater", id="one other, in a later run"
-        ),
-        pytest.param({"/chatter": STRING}, [{"/chatter": STRING}], "", id="the right name"),
-        pytest.param(
-            {"/chatter": STRING}, [{"/chatter": STRING, "/b": STRING}], "", id="the right name, and more"
-        ),
-        pytest.param({"/chatter": STRING}, [{"/a": STRING, "/b": STRING}], "", id="two others"),
-        pytest.param(
-            {"/chatter": STRING}, [{"/a": STRING}, {"/b": STRING}], "", id="another one in each run"
-        ),
-        pytest.param({"/chatter": STRING}, [{"/chater": OTHER}], "", id="another type"),
-        pytest.param({"/chatter": STRING}, [{}], "", id="none"),
-        pytest.param({"/a": STRING, "/b": STRING}, [{"/c": STRING}], "", id="it could be either of two"),
-        pytest.param(
-            {"/a": STRING, "/b": STRING}, [{"/a": STRING, "/c": STRING}], "/c", id="the other is right"
-        ),
-    ],
+    ("asked", "runs", "real"), named_cases(__file__, "a_name_is_wrong_if_exactly_one_endpoint_can_be_meant")
 )
 def test_a_name_is_wrong_if_exactly_one_endpoint_can_be_meant(
     asked: dict[str, str], runs: list[dict[str, str]], real: str

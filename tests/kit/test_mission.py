@@ -19,6 +19,7 @@ from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
 from autograder.kit.mission.track import ways
 from autograder.kit.runners import Process, process_line
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -443,15 +444,7 @@ def first_look(answer: Callable[[Ros], object]) -> Evidence:
     return Evidence([bench.seen()], bench.reference)
 
 
-@pytest.mark.parametrize(
-    ("way", "ends"),
-    [
-        ([AHEAD, BACK, AHEAD], 10.2),  # at the second change
-        ([(999, 0.5, 0.0)], 9.8),  # at the wall
-        ([(50, 0.5, 0.0)], 7.8),  # where it stands for good
-        ([(2, 0.1, 0.0), (2, 0.2, 0.0), (999, 0.5, 0.0)], 9.8),  # several changes at its start prove nothing
-    ],
-)
+@pytest.mark.parametrize(("way", "ends"), cases(__file__, "a_look_that_goes_as_the_first_one_ends"))
 def test_a_look_that_goes_as_the_first_one_ends(way: list[Any], ends: float) -> None:
     assert ends_at(follows(*way), before=first_look(follows(*way))) == pytest.approx(ends, abs=0.5)
 

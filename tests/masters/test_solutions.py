@@ -11,7 +11,7 @@ import pytest
 from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import reference_source, solution_files
 from autograder.masters.source_notebooks import Points, named_cells
-from tests.cases import cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,17 +66,7 @@ def test_an_exercise_without_a_reason_has_none(tmp_path: Path) -> None:
     assert made(tmp_path, None) == {}
 
 
-@pytest.mark.parametrize(
-    "why",
-    [
-        "",
-        "one\ntwo\nthree",
-        "x" * 200,
-        "Why.\n\n## Another way\n\nNo code.",
-        "Why.\n## Another way\n```python\nx\n```",
-    ],
-    ids=["nothing", "three lines", "a long line", "no code", "no words"],
-)
+@pytest.mark.parametrize("why", named_cases(__file__, "a_reason_of_another_form_is_refused"))
 def test_a_reason_of_another_form_is_refused(tmp_path: Path, why: str) -> None:
     with pytest.raises(MasterError, match=r"half\.why\.md"):
         made(tmp_path, why)

@@ -30,14 +30,7 @@ OLD, NEW = "class Talker: ...", "class Speaker: ..."
 
 
 @pytest.mark.parametrize(
-    "cells",
-    [
-        [("a", OLD), ("a", NEW)],
-        [("a", OLD), ("a", NEW), ("a", NEW), ("b", "1 + 1")],
-        [("a", "def Talker(): ..."), ("a", "def Speaker(): ...")],
-        [("a", OLD), ("b", OLD), ("b", NEW)],
-        [("a", OLD), ("a", "# class Talker: ...")],
-    ],
+    "cells", cases(__file__, "a_name_that_its_cell_does_not_define_any_more_is_not_judged")
 )
 def test_a_name_that_its_cell_does_not_define_any_more_is_not_judged(
     notebook: Notebook, cells: list[tuple[str, str]]
@@ -60,21 +53,7 @@ def test_what_the_checked_function_uses_must_be_in_a_cell_too(notebook: Notebook
     assert "does not define Help any more, it defines Helper" in str(shown.error)
 
 
-@pytest.mark.parametrize(
-    "cells",
-    [
-        [("a", OLD), ("a", NEW), ("a", OLD)],
-        [("a", OLD), ("b", OLD), ("a", NEW)],
-        [("a", OLD), ("a", NEW), ("b", OLD)],
-        [("a", OLD), ("a", NEW), ("b", "Talker = Speaker")],
-        [("a", OLD), ("a", f"{NEW}\nTalker = Speaker")],
-        [("a", OLD), ("a", "from fractions import Fraction as Talker")],
-        [("a", OLD), ("a", "if True:\n    class Talker: ...")],
-        [("a", OLD), ("b", "class Talker(Talker): ..."), ("a", NEW)],
-        [("a", "Talker = type('Talker', (), {})"), ("a", NEW)],
-        [("a", f"{OLD}\n{NEW}"), ("a", OLD)],
-    ],
-)
+@pytest.mark.parametrize("cells", cases(__file__, "a_name_that_is_defined_elsewhere_is_judged"))
 def test_a_name_that_is_defined_elsewhere_is_judged(notebook: Notebook, cells: list[tuple[str, str]]) -> None:
     shown = checked(notebook, *cells)
     assert (shown.error, shown.value) == (None, "0.0")

@@ -11,6 +11,7 @@ from autograder.authoring.mutants.survey import own_mutants
 from autograder.authoring.mutants.trials import NotOnPaper, paper_task, run_all
 from autograder.judge import evidence_files
 from tests.authoring.mutants.made_up import BRAKE, SOLUTION, by_habit, by_levels, task
+from tests.cases import named_cases
 
 pytestmark = pytest.mark.ros
 
@@ -58,20 +59,7 @@ def test_only_a_drawing_near_the_limit_tells_a_wrong_limit() -> None:
     assert passed(wrong, "levels") == [False] * 5
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        ("        self.publisher.publish", "        while True: pass\n        self.publisher.publish"),
-        ("        self.publisher.publish", "        raise ValueError\n        self.publisher.publish"),
-        ("(Bool(data", "(str(data"),
-        ('"/brake"', '"/break"'),
-        (
-            "        self.publisher.publish",
-            "        __import__('os').kill(0, 0) or __import__('os')._exit(0)",
-        ),
-    ],
-    ids=["never ends", "raises", "another type", "another name", "ends the process"],
-)
+@pytest.mark.parametrize("change", named_cases(__file__, "a_program_that_does_not_work_passes_nowhere"))
 def test_a_program_that_does_not_work_passes_nowhere(change: tuple[str, str]) -> None:
     wrong = BRAKE.replace(*change, 1)
     assert wrong != BRAKE

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     Start = Callable[..., Running]
 
 HEAD = cases(__file__, "HEAD")
-STUBBORN = "['sh', '-c', 'trap \"\" INT; echo up; while :; do sleep 0.05; done']"
 
 
 @pytest.fixture
@@ -60,11 +59,6 @@ def wait_until_gone(pid: int) -> None:
         time.sleep(0.01)
 
 
-def pid_of(running: Running, name: str) -> int:
-    line = running.wait_for(f"[{name}]: process started with pid [")
-    return int(line.rpartition("[")[2].rstrip("]"))
-
-
 @pytest.mark.parametrize("case", named_cases(__file__, "what_a_launch_says"))
 def test_what_a_launch_says(ros2: Ros2, write: Callable[[str], str], case: dict[str, Any]) -> None:
     done = ros2("launch", *case.get("words", ()), write(case["actions"]))
@@ -90,19 +84,36 @@ def test_a_file_that_its_package_has_not_is_said_so(ros2: Ros2, name: str) -> No
     assert "Traceback" not in done.stderr
 
 
-def test_ctrl_c_ends_every_process(start: Start, write: Callable[[str], str]) -> None:
-    running = start(
-        "launch", write("ExecuteProcess(cmd=['sleep', '100']), ExecuteProcess(cmd=['sleep', '200']),")
-    )
-    pids = [pid_of(running, name) for name in ("sleep-1", "sleep-2")]
-    running.send(signal.SIGINT)
-    assert running.end() == 0
-    assert shape(running.text)[4:7] == [
-        "[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)",
-        "[INFO] [sleep-1]: sending signal 'SIGINT' to process[sleep-1]",
-        "[INFO] [sleep-2]: sending signal 'SIGINT' to process[sleep-2]",
-    ]
-    assert all(map(gone, pids))
+@pytest.mark.parametrize(
+    ("actions", "ready", "signals", "code", "says"), named_cases(__file__, "a_signal_ends_every_process")
+)
+def test_a_signal_ends_every_process(
+    start: Start,
+    write: Callable[[str], str],
+    actions: str,
+    ready: tuple[str, ...],
+    signals: tuple[tuple[str, str], ...],
+    code: int,
+    says: tuple[str, ...],
+) -> None:
+    running = start("launch", write(actions))
+    lines = [running.wait_for(text) for text in ready]
+    for name, answer in signals:
+        running.send(signal.Signals[name])
+        running.wait_for(answer)
+    assert running.end() == code
+    text = "\n".join(shape(running.text))
+    assert [said for said in says if said not in text] == []
+    pids = [line.rpartition("[")[2].rstrip("]") for line in lines if "started with pid" in line]
+    assert all(gone(int(pid)) for pid in pids)
+
+
+def test_even_a_killed_launch_leaves_nothing_behind(start: Start, write: Callable[[str], str]) -> None:
+    running = start("launch", write("ExecuteProcess(cmd=['sleep', '100']),"))
+    line = running.wait_for("[sleep-1]: process started with pid [")
+    running.send(signal.SIGKILL)
+    running.process.wait(20)
+    wait_until_gone(int(line.rpartition("[")[2].rstrip("]")))
 
 
 def test_ctrl_c_reaches_what_a_process_has_started(start: Start, write: Callable[[str], str]) -> None:
@@ -112,63 +123,6 @@ def test_ctrl_c_reaches_what_a_process_has_started(start: Start, write: Callable
     running.send(signal.SIGINT)
     running.end()
     wait_until_gone(inner)
-
-
-def test_a_second_ctrl_c_is_ignored_and_signals_escalate(start: Start, write: Callable[[str], str]) -> None:
-    actions = f"ExecuteProcess(cmd={STUBBORN}, output='screen', sigterm_timeout='0.4'),"
-    running = start("launch", write(actions))
-    running.wait_for("[sh-1] up")
-    running.send(signal.SIGINT)
-    running.wait_for("user interrupted with ctrl-c (SIGINT)")
-    running.send(signal.SIGINT)
-    running.wait_for("user interrupted with ctrl-c (SIGINT) again, ignoring...")
-    assert running.end() == 0
-    assert (
-        "[ERROR] [sh-1]: process[sh-1] failed to terminate '0.4' seconds after receiving 'SIGINT', "
-        "escalating to 'SIGTERM'" in running.lines
-    )
-    assert "[INFO] [sh-1]: sending signal 'SIGTERM' to process[sh-1]" in running.lines
-    assert "exit code -15" in running.lines[-1]
-
-
-def test_the_last_resort_is_sigkill(start: Start, write: Callable[[str], str]) -> None:
-    stubborn = STUBBORN.replace("INT", "INT TERM")
-    actions = (
-        f"ExecuteProcess(cmd={stubborn}, output='screen', sigterm_timeout='0.2', sigkill_timeout='0.2'),"
-    )
-    running = start("launch", write(actions))
-    running.wait_for("[sh-1] up")
-    running.send(signal.SIGINT)
-    running.end()
-    assert "escalating to 'SIGKILL'" in running.text
-    assert "exit code -9" in running.lines[-1]
-
-
-def test_sigterm_ends_every_process_too(start: Start, write: Callable[[str], str]) -> None:
-    running = start("launch", write("ExecuteProcess(cmd=['sleep', '100']),"))
-    pid = pid_of(running, "sleep-1")
-    running.send(signal.SIGTERM)
-    assert running.end() == 1
-    assert "[ERROR] [launch]: user interrupted with ctrl-\\ (SIGTERM), terminating..." in running.lines
-    assert gone(pid)
-
-
-def test_even_a_killed_launch_leaves_nothing_behind(start: Start, write: Callable[[str], str]) -> None:
-    running = start("launch", write("ExecuteProcess(cmd=['sleep', '100']),"))
-    pid = pid_of(running, "sleep-1")
-    running.send(signal.SIGKILL)
-    running.process.wait(20)
-    wait_until_gone(pid)
-
-
-def test_a_timer_does_not_hold_up_the_end(start: Start, write: Callable[[str], str]) -> None:
-    running = start(
-        "launch", write("TimerAction(period=100.0, actions=[LogInfo(msg='late')]), LogInfo(msg='now'),")
-    )
-    running.wait_for("now")
-    running.send(signal.SIGINT)
-    assert running.end() == 0
-    assert "late" not in running.text
 
 
 def test_arguments_of_a_launch_file(ros2: Ros2, write: Callable[[str], str]) -> None:

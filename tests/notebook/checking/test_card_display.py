@@ -54,13 +54,6 @@ def test_while_a_check_goes_on_its_card_says_so_and_shows_no_earlier_diagnosis(
 ) -> None:
     """What stood there meanwhile is taken from the display itself, at the moment at which the check was going on."""
     watched = """
-shown = []
-usual = card_display.update_card
-def update(handle, card):
-    shown.append(card["text/plain"])
-    usual(handle, card)
-card_display.update_card = update
-
 def meanwhile(progress):
     progress.doing("building my_package")
     import time
@@ -85,16 +78,6 @@ check("lab", Talker)
 
 
 def test_what_a_long_check_knows_is_of_the_new_code_alone(run: Callable[..., list[Any]]) -> None:
-    watched = """
-shown = []
-usual = card_display.update_card
-def update(handle, card):
-    shown.append(card["text/plain"])
-    usual(handle, card)
-card_display.update_card = update
-scores[:] = [5.0, 8.0]
-check("lab", Talker)
-"""
     again = """
 def meanwhile(progress):
     import time
@@ -105,42 +88,21 @@ card_display.LONG = 0.0
 shown.clear()
 check("lab", Talker)
 """
-    *_, said = run(watched, again, "print(*shown[:-1])")
+    *_, said = run("scores[:] = [5.0, 8.0]; check('lab', Talker)", again, "print(*shown[:-1])")
     assert "So far: it says nothing." in said[0].text
     assert "It says b." not in said[0].text, "that was the answer before"
 
 
 def test_a_quick_check_finds_the_card_of_the_one_before_marked_as_such(run: Callable[..., list[Any]]) -> None:
-    watched = """
-displayed = []
-usual = card_display.display_card
-def display_card(card):
-    displayed.append(card["text/plain"])
-    return usual(card)
-card_display.display_card = display_card
-scores[:] = [5.0, 8.0]
-check("lab", Talker)
-"""
-    *_, said = run(watched, "check('lab', Talker)", "print(displayed[-1])")
+    first = "scores[:] = [5.0, 8.0]; check('lab', Talker)"
+    *_, said = run(first, "check('lab', Talker)", "print(begun[-1])")
     assert "this is the result of the previous check" in " ".join(said[0].text.split())
 
 
 def test_an_interrupted_check_ends_on_its_card(run: Callable[..., list[Any]]) -> None:
-    interrupted = """
-displayed = []
-usual = card_display.display_card
-def display_card(card):
-    displayed.append(usual(card))
-    return displayed[-1]
-card_display.display_card = display_card
-
-def meanwhile(progress):
-    import time
-    while not displayed:
-        time.sleep(0.01)
-    raise KeyboardInterrupt
-"""
-    _, (card, *_) = run(interrupted, "try:\n    check('lab', Talker)\nexcept KeyboardInterrupt:\n    pass")
+    _, (card, *_) = run(
+        "meanwhile = interrupted", "try:\n    check('lab', Talker)\nexcept KeyboardInterrupt:\n    pass"
+    )
     assert "Checking" not in card.data["text/plain"]
     assert "The check was interrupted, so there is no result" in card.data["text/plain"]
     assert "agc-waiting" not in card.data["text/html"].partition("<style>")[0]
@@ -167,18 +129,7 @@ scores[:] = [5.0]
 
 def test_another_interrupt_does_not_leave_a_card_that_goes_on(run: Callable[..., list[Any]]) -> None:
     interrupted = """
-displayed = []
-usual = card_display.display_card
-def display_card(card):
-    displayed.append(usual(card))
-    return displayed[-1]
-card_display.display_card = display_card
-
-def meanwhile(progress):
-    import time
-    while not displayed:
-        time.sleep(0.01)
-    raise KeyboardInterrupt
+meanwhile = interrupted
 
 class Interrupted(card_display.ProgressUpdater):
     def stop(self):
