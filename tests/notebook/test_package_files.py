@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -15,13 +15,12 @@ from autograder.notebook.package_files import (
 )
 from course_runtime.ros2_command import pkg_templates
 from course_runtime.ros2_command.pkg_templates import Package
-from tests.cases import cases
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 INTERFACES = "my_robot_interfaces"
-HELLO = "simple_node = my_robot_pkg.simple_node:main"
 TALKER = "talker = my_robot_pkg.talker:main"
 
 
@@ -49,57 +48,23 @@ def executables(workspace: Path) -> list[str]:
     return found["console_scripts"]
 
 
-def test_entry_points_are_added_below_those_that_are_there(workspace: Path) -> None:
-    assert add_entry_points(workspace, []) == "my_robot_pkg has no executable yet."
-    assert HELLO in add_entry_points(workspace, [HELLO])
-    said = add_entry_points(workspace, [TALKER])
-    assert executables(workspace) == [HELLO, TALKER]
-    assert said.splitlines() == ["Executables of my_robot_pkg:", f"  {HELLO}", f"  {TALKER}"]
-
-
-def test_an_earlier_lab_takes_nothing_away(workspace: Path) -> None:
-    add_entry_points(workspace, [HELLO])
-    add_entry_points(workspace, [TALKER])
-    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
-    add_entry_points(workspace, [HELLO])
-    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
-
-
-def test_a_corrected_entry_point_replaces_the_wrong_one(workspace: Path) -> None:
-    add_entry_points(workspace, ["simple_node = simple_node:main", TALKER])
-    add_entry_points(workspace, ["simple_node=my_robot_pkg.simple_node:main"])
-    assert executables(workspace) == ["simple_node=my_robot_pkg.simple_node:main", TALKER]
-    add_entry_points(workspace, ["say = my_robot_pkg.talker:main"])
-    assert executables(workspace)[1:] == ["say = my_robot_pkg.talker:main"]
-
-
-@pytest.mark.parametrize("entry", ["simple_node", "simple_node: my_robot_pkg", "a b = c:d", "x = y", 3])
-def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> None:
-    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
-    assert "is not an entry point" in add_entry_points(workspace, [TALKER, entry])
-    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
-
-
-@pytest.mark.parametrize(("entry", "what"), cases(__file__, "what_is_wrong_with_it_is_said"))
-def test_what_is_wrong_with_it_is_said(workspace: Path, entry: str, what: str) -> None:
-    told = add_entry_points(workspace, [entry])
-    assert "is not an entry point" in told
-    assert what in told
-
-
-def test_a_module_without_its_package_is_warned_of(workspace: Path) -> None:
-    told = add_entry_points(workspace, ["simple_node = simple_node:main", TALKER])
-    assert told.count("Careful") == 1
-    assert told.endswith("Write my_robot_pkg.simple_node.")
-    assert "Careful" not in add_entry_points(workspace, [HELLO])
-
-
-def test_two_entry_points_without_a_comma_between_them_are_told_as_that(workspace: Path) -> None:
-    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
-    told = add_entry_points(workspace, [TALKER + HELLO])
-    assert told.startswith("Two entry points have run together")
-    assert "A comma is missing between them" in told
-    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
+@pytest.mark.parametrize("case", named_cases(__file__, "what_becomes_of_entry_points"))
+def test_what_becomes_of_entry_points(workspace: Path, case: dict[str, Any]) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.write_text(case.get("setup", setup.read_text()))
+    before = setup.read_text()
+    said = [add_entry_points(workspace, entries) for entries in case["adds"]]
+    assert [text for text in case.get("says", ()) if text not in said[-1]] == []
+    assert [text for text in case.get("hides", ()) if text in said[-1]] == []
+    after = setup.read_text()
+    assert [text for text in case.get("keeps", ()) if text not in after] == []
+    if "executables" in case:
+        assert tuple(executables(workspace)) == case["executables"]
+    elif "keeps" not in case:
+        assert after == before
+    ast.parse(after)
+    add_entry_points(workspace, case["adds"][-1])
+    assert setup.read_text() == after
 
 
 @pytest.mark.parametrize(
@@ -119,67 +84,6 @@ def test_a_setup_that_cannot_be_used(workspace: Path, text: str | bytes | None, 
     else:
         setup.write_bytes(text if isinstance(text, bytes) else text.encode())
     assert words in add_entry_points(workspace, [TALKER])
-
-
-def test_letters_of_other_alphabets_do_not_shift_the_list(workspace: Path) -> None:
-    setup = workspace / "src/my_robot_pkg/setup.py"
-    setup.write_text("setup(description='für Zoë', entry_points={'console_scripts': []})\n")
-    add_entry_points(workspace, [TALKER])
-    assert executables(workspace) == [TALKER]
-    assert "für Zoë" in setup.read_text()
-
-
-@pytest.mark.parametrize(
-    "element", cases(__file__, "an_entry_point_that_is_put_together_stays_until_it_is_replaced")
-)
-def test_an_entry_point_that_is_put_together_stays_until_it_is_replaced(
-    workspace: Path, element: str
-) -> None:
-    setup = workspace / "src/my_robot_pkg/setup.py"
-    setup.write_text(
-        f"package_name = 'my_robot_pkg'\nsetup(entry_points={{'console_scripts': [\n    {element},\n]}})\n"
-    )
-    said = add_entry_points(workspace, [TALKER])
-    assert said.splitlines()[1:] == [f"  {HELLO}", f"  {TALKER}"]
-    assert element.strip("()") in setup.read_text()
-    add_entry_points(workspace, ["simple_node = my_robot_pkg.cli:hello"])
-    assert executables(workspace) == ["simple_node = my_robot_pkg.cli:hello", TALKER]
-
-
-def test_what_only_python_can_work_out_stays_as_it_stands(workspace: Path) -> None:
-    setup = workspace / "src/my_robot_pkg/setup.py"
-    computed = "*(f'{name} = my_robot_pkg.{name}:main' for name in NAMES)"
-    setup.write_text(f"setup(entry_points={{'console_scripts': [{computed}]}})\n")
-    add_entry_points(workspace, [TALKER])
-    text = setup.read_text()
-    assert computed in text
-    assert f'"{TALKER}"' in text
-    ast.parse(text)
-
-
-COMMENTED = """setup(entry_points={'console_scripts': [  # what ros2 run starts
-    # Lab 1.1
-    'simple_node = my_robot_pkg.simple_node:main',  # says hello
-    'a = my_robot_pkg.a:main', 'b = my_robot_pkg.b:main',  # both
-    # 'old = my_robot_pkg.old:main',
-]})  # end
-"""
-
-
-def test_comments_in_the_list_stay_where_they_are(workspace: Path) -> None:
-    setup = workspace / "src/my_robot_pkg/setup.py"
-    setup.write_text(COMMENTED)
-    add_entry_points(workspace, [TALKER, "simple_node = my_robot_pkg.cli:hello"])
-    assert setup.read_text().splitlines()[1:] == [
-        "    # what ros2 run starts",
-        "    # Lab 1.1",
-        '    "simple_node = my_robot_pkg.cli:hello",',
-        "    'a = my_robot_pkg.a:main',",
-        "    'b = my_robot_pkg.b:main',  # both",
-        f'    "{TALKER}",',
-        "    # 'old = my_robot_pkg.old:main',",
-        "]})  # end",
-    ]
 
 
 def test_a_dependency_is_added_once(workspace: Path) -> None:
