@@ -5,11 +5,9 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
-import random
 import signal
 import sqlite3
 import subprocess
-import time
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -411,39 +409,6 @@ def test_a_step_that_was_killed_in_its_middle_was_never_begun(store: ClassStore)
     assert file_of(store).stat().st_size > 1_000_000, "it was in its middle"
     assert store.entered() == {("ada", "lab"): entered()}
     assert store.results("0", "lab") == {}
-
-
-def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: ClassStore) -> None:
-    chance = random.Random(4)
-    store.enter(submission(), entered())
-    store.close()
-    done = 1
-    for _ in range(15):
-        read, write = os.pipe()
-
-        def work(write: int = write, done: int = done) -> None:
-            for number in range(done, 10_000):
-                store.enter(submission(), entered(number))
-                os.write(write, b".")
-
-        child = in_a_process(work)
-        os.close(write)
-        said = os.read(read, 1)
-        time.sleep(chance.uniform(0, 0.05))
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
-        while more := os.read(read, 100_000):
-            said += more
-        os.close(read)
-        with contextlib.closing(sqlite3.connect(file_of(store))) as book:
-            assert book.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        kept = len(store.attempts("ada"))
-        assert kept - done in (len(said), len(said) + 1)
-        assert store.entered()["ada", "lab"].made_from == ResultKey(f"work {kept - 1}"), (
-            "both of a step, or none"
-        )
-        store.close()
-        done = kept
 
 
 def test_a_step_is_on_the_disk_before_it_is_said_to_be_done(store: ClassStore) -> None:

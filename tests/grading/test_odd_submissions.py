@@ -206,7 +206,7 @@ def test_a_students_folder_that_may_not_be_read(tiny: TinyClass, monkeypatch: py
 
 
 MISLEADING = (
-    *("a*", "x\ny", "=cmd", "[a-z]", "{0}", "a\x1b[2J", ";rm", "a,b"),
+    *("a*", " a", "a ", "x\ny", "=cmd", "[a-z]", "{0}", "a\x1b[2J", ";rm", "a,b"),
     *("a\u202eb", "a\u2066b", "\u200badmin", "\ufeffada", "a\u007f", "a\tb", "a\rb", "\u2215etc"),
     *("a\\b", "~", "$HOME", "`id`", "%2e%2e", "a:b", "<b>", '"', "a?b", "#a", "&a", "x" * 101, "ö" * 60),
 )

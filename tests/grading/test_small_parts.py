@@ -16,7 +16,6 @@ import pytest
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_secret import create_secret, read_secret
-from autograder.grading.classes.student_folders import reason_against_name
 from autograder.grading.grading_errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.grading_task import Task, points
 from autograder.grading.new_classes.new_class import NewClass
@@ -100,13 +99,6 @@ def test_a_seed_is_a_secret_and_never_shared(tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("00ff")
     with pytest.raises(ValueError, match="32 bytes"):
         read_secret(tmp_path / "secret")
-
-
-@pytest.mark.parametrize(
-    "name", ["a/b", "a\0b", "..\\x", "a*", "?", "\u202eevil", "a\nb", " a", "a ", "e\u0301", "\udcff", ""]
-)
-def test_strange_names_have_a_reason(name: str) -> None:
-    assert reason_against_name(name) or name == ""
 
 
 def test_a_class_without_new_work_waits_for_no_import_of_nbgrader() -> None:

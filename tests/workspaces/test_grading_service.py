@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import sys
 import tempfile
 import threading
@@ -22,7 +21,6 @@ from autograder.messages.json_lines import Hangup, Lines
 from autograder.workspaces import grading_service, packages, sources
 from autograder.workspaces.builds import students_builds
 from autograder.workspaces.builds.build_artifacts import Kind, PackedEntry
-from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
 from autograder.workspaces.jobs import BuildJob, BuildOutcome, PlainProgram, ProgramJob
 
@@ -45,7 +43,6 @@ class FakeJobs:
         self.environment: Mapping[str, str] = {"PATH": "/usr/bin:/bin"}
         self.builds: list[list[str]] = []
         self.sources: list[str] = []
-        self.boxes: list[set[tuple[str, int, bytes]]] = []
         self.commands: list[Sequence[str]] = []
         self.built = BuildOutcome(
             0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
@@ -62,16 +59,6 @@ class FakeJobs:
     def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> BuildOutcome:
         self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
         self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
-        self.boxes.append(
-            {
-                (
-                    str(path.relative_to(entry.folder)),
-                    path.stat().st_mode,
-                    path.read_bytes() if path.is_file() else b"",
-                )
-                for path in (entry.folder / "src").rglob("*")
-            }
-        )
         self.waiting(job.cancelled)
         return self.built
 
@@ -218,22 +205,6 @@ def test_what_a_failed_build_has_left_is_not_taken(judge: FakeJudge, jobs: FakeJ
     assert not jobs.commands
 
 
-def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
-    judge: FakeJudge, jobs: FakeJobs, tmp_path: Path
-) -> None:
-    """Read as text it stays inside; followed, its second part leads to the top of the folder, and on from there."""
-    os.mkfifo(tmp_path / "pipe")
-    deep, info = "/".join("d" * 17), f"my_robot_pkg/{LIBRARY}/z.egg-info"
-    links = {
-        f"{info}/{deep}/b": "../" * 21,
-        f"{info}/entry_points.txt": f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
-    }
-    jobs.built = BuildOutcome(0, b"", _packed("my_robot_pkg/share/x", **links))
-    told = reports(judge.run())[-1]
-    assert told["trouble"] == "build"
-    assert "link" in told["line"]
-
-
 def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
     for _ in range(2):
         judge = FakeJudge(sockets)
@@ -250,45 +221,6 @@ def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: 
         judge.run()
         judge.lines.close()
         assert len(jobs.builds) == runs
-
-
-PACKAGE = "ros2_ws/src/my_robot_pkg"
-
-
-@pytest.mark.parametrize(
-    "odd",
-    [
-        messages.Source(f"{PACKAGE}/setuptools.pyc", b"x"),
-        messages.Source(f"{PACKAGE}/__pycache__/setup.cpython-311.pyc", b"x"),
-        messages.Source(f"{PACKAGE}/.git/hooks.py", b"x"),
-        messages.Source(f"{PACKAGE}/setuptools.pyc/__init__.py", b"x"),
-        messages.Source(f"{PACKAGE}/empty"),
-        messages.Source(f"{PACKAGE}/empty.pyc"),
-        messages.Source(f"{PACKAGE}/.hidden", b""),
-        messages.Source(f"{PACKAGE}/SETUP.py", b""),
-        messages.Source(f"{PACKAGE}/run.sh", b"", executable=True),
-        messages.Source("ros2_ws/src/setup.cfg", b"x"),
-        messages.Source("ros2_ws/src/colcon.meta", b"x"),
-        messages.Source("ros2_ws/build/my_robot_pkg/x", b"x"),
-    ],
-    ids=lambda source: source.path.removeprefix("ros2_ws/"),
-)
-def test_who_shares_a_build_has_given_the_very_same_to_its_box(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, odd: messages.Source
-) -> None:
-    plain = sources.collect_workspace(lab)
-    for sent in ([*plain, odd], plain):
-        judge = FakeJudge(sockets)
-        judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", len(sent)))
-        for source in sent:
-            judge.lines.say(source)
-        judge.lines.hear(run_messages.Ready)
-        assert reports(judge.run())[-1]["built"]
-        judge.lines.close()
-    inside = f"/{odd.path.removeprefix('ros2_ws/')}"
-    seen = any(f"/{path}".startswith(inside) for path, _, _ in jobs.boxes[0])
-    assert len(jobs.boxes) == (2 if seen else 1)
-    assert not seen or jobs.boxes[0] != jobs.boxes[1]
 
 
 def test_what_is_not_needed_is_not_built(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:

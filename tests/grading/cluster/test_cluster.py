@@ -119,25 +119,6 @@ def test_a_worker_that_is_killed_costs_only_its_tasks_again_and_the_gradebook_is
     assert local.rows == report.rows
 
 
-def crowded_at_first(folder: Path) -> str:
-    """An answer that fails as on a crowded machine, the first time; later it is 8."""
-    place = f"__import__('pathlib').Path({str(folder / 'tried')!r})"
-    return f"8 if {place}.exists() else {place}.write_text('') or 'crowded 3'"
-
-
-def test_a_failure_on_a_crowded_worker_counts_only_where_nothing_else_runs_there(
-    cluster: DaskCluster, unboxed: TinyClass, tmp_path: Path
-) -> None:
-    unboxed.submit("ada", crowded_at_first(tmp_path), 5)
-    for student in ("ben", "cleo", "dora"):
-        unboxed.submit(student, 6)
-    with cluster.worker("one", 2):
-        report = graded_on(cluster, unboxed)
-    assert (report.executed, report.problems, report.exit_code) == (4, (), 0)
-    assert unboxed.scores("ada") == {TALKER: 8, LISTENER: 5}
-    assert unboxed.scores("dora")[TALKER] == 6
-
-
 PICKLER = cases(__file__, "PICKLER")
 
 # Every client of Dask reads what workers warn of. This one is what the grader would be without its client.

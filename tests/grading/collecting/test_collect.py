@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.collect import CollectReport
 
-BERLIN = ZoneInfo("Europe/Berlin")
-
 
 def work(klass: TinyClass, talker: object = 10, listener: object = 10) -> str:
     path = klass.submit("nobody", talker, listener)
@@ -181,8 +179,8 @@ def test_every_method_that_python_knows_is_unpacked(klass: TinyClass, tmp_path: 
 
 def test_what_unpacks_to_gigabytes_is_held_as_small_as_it_came(klass: TinyClass, tmp_path: Path) -> None:
     """16 kB, handed in by one student, took 4 GB of the grader's memory with files of 49 MB."""
-    inner = zipped({f"{number}/lab_1_2.ipynb": b" " * 4_000_000 for number in range(10)})
-    files = {f"Ben Bär_2_assignsubmission_file_/{number}.zip": inner for number in range(4)}
+    inner = zipped({f"{number}/lab_1_2.ipynb": b" " * 4_000_000 for number in range(4)})
+    files = {f"Ben Bär_2_assignsubmission_file_/{number}.zip": inner for number in range(3)}
     files["Ada Lovelace_1_assignsubmission_file_/lab_1_2.ipynb"] = work(klass).encode()
     download = write_zip(tmp_path / "d.zip", files)
     tracemalloc.start()
@@ -215,15 +213,6 @@ def test_a_damaged_archive_is_one_line(klass: TinyClass, tmp_path: Path, damage:
     assert len(report.having(LineState.NOT_PLACED)) == 1
     if damage == "encrypted":
         assert "encrypted" in why(report)
-
-
-def test_a_roster_with_semicolons_and_a_mark_is_read(tiny: TinyClass, tmp_path: Path) -> None:
-    (tiny.path / "students.csv").write_text("\ufeffID;First_Name;Last_Name\r\nada;Ada;Lovelace\r\n")
-    report = collect(
-        tiny.path,
-        [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(tiny)})],
-    )
-    assert placed(report).keys() == {"ada"}
 
 
 def test_the_roster_is_in_the_table(klass: TinyClass, fake_engine: FakeEngine) -> None:

@@ -119,19 +119,6 @@ def test_an_archive_that_says_what_cannot_be_keeps_nobodys_work_from_being_colle
     assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ben"]
 
 
-def test_many_small_archives_have_no_more_room_than_one(
-    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(downloaded_files.Room.__init__, "__defaults__", (50, MB))
-    small = zipped({f"{number}.txt": "" for number in range(10)})
-    of_ben = {f"{number}.zip": small for number in range(7)} | {"w.zip": zipped({"a.zip": small})}
-    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
-    assert placed(report).keys() == {"zoe"}
-    assert [one.label[-5:] for one in report.having(LineState.NOT_PLACED) if one.label.endswith(".zip")] == [
-        "5.zip", "6.zip", "w.zip",
-    ]  # fmt: skip
-
-
 def test_a_name_longer_than_any_floods_nobody(klass: TinyClass, tmp_path: Path) -> None:
     long = zipped({f"lab_1_2{'(1)' * 20_000}.ipynb": work(klass), "lab_1_2.ipynb": work(klass)})
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"w.zip": long})])

@@ -3,36 +3,24 @@
 from __future__ import annotations
 
 import csv
-import ctypes
 import errno
 import io
-import os
-import random
-import shutil
-import sys
-import traceback
-from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import pytest
-from click.testing import CliRunner
 from downloads import write_zip
 from test_collect import lies, placed, work
 from test_collected_csv import edit, read, save
 from test_where_it_goes import outcome
 from tiny_class import LISTENER, TALKER
 
-from autograder.boxes.process_isolation import leave_the_host, mount_tmpfs
-from autograder.boxes.sandbox import why_impossible
-from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import collected_csv, collected_files, submitted_folder
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.grading_errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from pathlib import Path
     from types import ModuleType
 
     from tiny_class import FakeEngine, TinyClass
@@ -128,116 +116,3 @@ def test_a_full_disk_has_a_sentence_and_the_same_command_goes_on(
     assert not [*klass.path.rglob("*.new")]
     assert collect(klass.path, [archive]).exit_code == 0
     assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
-
-
-def test_a_disk_that_really_fills_up_loses_nothing(klass: TinyClass, tmp_path: Path) -> None:
-    """What a box unpacks, and the inbox, do not fit on a disk of 6 MB; what was collected before is still there."""
-    if reason := why_impossible():
-        pytest.skip(reason)
-    small = blackboard(klass, tmp_path, ada=(3, 1))
-    large = write_zip(
-        tmp_path / "large.zip",
-        {f"{DAY.format('ben', 4)[:-6]} {n}.txt": random.Random(n).randbytes(3_000_000) for n in range(4)},
-    )
-    disk = tmp_path / "disk"
-    disk.mkdir()
-
-    def work_there() -> None:
-        mount_tmpfs(disk, 6_000_000, 10_000)
-        copy = type(klass)(Path(shutil.copytree(klass.path, disk / "class")))
-        collect(copy.path, [small])
-        before = outcome(copy)
-        with pytest.raises(GradingError, match="is full"):
-            collect(copy.path, [large])
-        assert not [*copy.path.rglob("*.new")]
-        assert collect(copy.path, [small]).exit_code == 0
-        assert outcome(copy) == before
-
-    away_from_the_host(work_there)
-
-
-def away_from_the_host(call: Callable[[], None]) -> None:
-    """Call a function in a child process whose mounts no other process sees."""
-    if (child := os.fork()) == 0:
-        code = 1
-        try:
-            leave_the_host()
-            call()
-            code = 0
-        except BaseException:
-            traceback.print_exc()
-        finally:
-            os._exit(code)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-
-
-def test_a_class_on_a_disk_that_is_only_read_is_one_sentence(klass: TinyClass, tmp_path: Path) -> None:
-    if reason := why_impossible():
-        pytest.skip(reason)
-    archive = blackboard(klass, tmp_path, ada=(3, 1))
-    (disk := tmp_path / "disk").mkdir()
-
-    def work_there() -> None:
-        mount_tmpfs(disk, 6_000_000, 10_000)
-        copy = Path(shutil.copytree(klass.path, disk / "class"))
-        read_only = ctypes.c_ulong(0x20 | 0x2 | 0x4 | 0x1)  # remounted without setuid, devices and writing
-        assert ctypes.CDLL(None, use_errno=True).mount(None, os.fsencode(disk), None, read_only, None) == 0
-        result = CliRunner().invoke(cli, ["collect", str(copy), str(archive)])
-        assert result.exit_code == 2, result.output
-        assert "Read-only file system" in result.output
-        assert "Traceback" not in result.output
-
-    away_from_the_host(work_there)
-
-
-def killed_at(klass: Path, archive: Path, moment: int) -> int:
-    """Collect in a child that ends without a word when it opens, renames or removes its file of this number.
-
-    Returns:
-        How many such moments came; the child ended at the last one if that is ``moment``.
-    """
-    read_end, write_end = os.pipe()
-    if (child := os.fork()) == 0:
-        came = 0
-
-        def watch(event: str, arguments: tuple[object, ...]) -> None:
-            nonlocal came
-            if event in ("open", "os.rename", "os.remove") and str(klass) in str(arguments[0]):
-                came += 1
-                if came == moment:
-                    os.write(write_end, str(came).encode())
-                    os._exit(9)
-
-        sys.addaudithook(watch)
-        try:
-            collect(klass, [archive])
-        finally:
-            os.write(write_end, str(came).encode())
-            os._exit(0)
-    os.close(write_end)
-    os.waitpid(child, 0)
-    with os.fdopen(read_end) as pipe:
-        return int(pipe.read())
-
-
-def test_killed_at_ten_random_moments_nothing_is_lost(klass: TinyClass, tmp_path: Path) -> None:
-    seed = random.SystemRandom().randrange(1 << 30)
-    print(f"seed {seed}")
-    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1), ben=(3, 2))])
-    edit(klass, "ben", use="yes")
-    later = blackboard(klass, tmp_path, ada=(4, 3), ben=(4, 4), eve=(4, 5))
-
-    def fresh(name: str) -> TinyClass:
-        return type(klass)(Path(shutil.copytree(klass.path, tmp_path / name)))
-
-    whole = fresh("whole")
-    moments = killed_at(whole.path, later, 0)
-    assert moments > 20
-    for number, moment in enumerate(random.Random(seed).sample(range(1, moments + 1), 10)):
-        copy = fresh(f"copy{number}")
-        assert killed_at(copy.path, later, moment) == moment
-        assert lies(copy, "ben") == work(klass, 2)
-        report = collect(copy.path, [later])
-        assert not report.having(LineState.NOT_PLACED)
-        assert outcome(copy) == outcome(whole), f"killed at {moment}"
-        assert not [*copy.path.rglob("*.new")]

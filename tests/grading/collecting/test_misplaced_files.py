@@ -83,17 +83,6 @@ def test_who_asks_for_one_student_hears_of_that_one(tiny: TinyClass, fake_engine
     assert (report.refused, report.exit_code) == ((), 0)
 
 
-def test_nothing_is_moved_through_a_link(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    neighbour = tiny.submit("ada")
-    folder = tiny.path / "submitted" / "eve" / "lab_1_2"
-    folder.mkdir(parents=True)
-    (folder / "lab_1_2 (1).ipynb").symlink_to(neighbour)
-    (tiny.path / "submitted" / "eve" / "lab_1_2.ipynb").symlink_to(neighbour)
-    tiny.grade()
-    assert (folder / "lab_1_2 (1).ipynb").is_symlink()
-    assert tiny.scores("eve")[TALKER] == 0
-
-
 def own_assignment(tiny: TinyClass, *, manual: bool) -> None:
     """A second assignment: a question of the instructor's, or a check of an exercise that there is not."""
     import nbformat
@@ -111,21 +100,6 @@ def own_assignment(tiny: TinyClass, *, manual: bool) -> None:
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     nbformat.write(notebook, path)
     release(ClassDirectory(tiny.path))
-
-
-def test_nothing_is_moved_into_a_neighbours_folder_through_a_link(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-    one = tiny.submit("ada", 4, 7)
-    neighbours = tiny.path / "submitted" / "ben" / "lab_1_2"
-    neighbours.mkdir(parents=True)
-    one.rename(one.parent.parent / one.name)
-    one.parent.rmdir()
-    one.parent.symlink_to(neighbours)
-    report = tiny.grade()
-    assert not list(neighbours.iterdir())
-    assert "lab_1_2.ipynb: the file is not graded in this place" in refused(report)
-    assert "lab_1_2: the path is a link" in refused(report)
 
 
 @pytest.mark.parametrize("folder", ["ada/lab_1_2", "ada"])

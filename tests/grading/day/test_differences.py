@@ -45,7 +45,8 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     by_person(tiny, "eve", TALKER, 9)
     tiny.submit("ben", 10, 7)
     tiny.submit("eve", 10, 7)
-    (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").unlink()  # a run makes this page again
+    lost = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    lost.unlink()
     before = files(tiny)
     fake_engine.ran.clear()
     report = tiny.grade(dry_run=True, feedback=True)
@@ -63,6 +64,7 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     fake_engine.ran.clear()
     assert tiny.grade(feedback=True).would_change is None
     assert (fake_engine.ran, tiny.scores("ben")) == ([], {TALKER: 10, LISTENER: 7})
+    assert lost.is_file(), "a run makes a lost page again"
     assert "Nothing was entered. No result would change." in shown(tiny.grade(dry_run=True))
 
 

@@ -13,11 +13,9 @@ from nbgrader.api import Gradebook
 from tiny_class import QUIET
 
 from autograder import exercises
-from autograder.appeals import appeal_file, replaying
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.new_classes import sample_class
 from autograder.grading.new_classes.sample_class import SampleNotebook, demo, sample_notebooks
-from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.judge.machine_fitness import TOO_BUSY
 from tests.submissions.odd_notebooks import FIXTURES, odd_notebooks, text_of
 from tests.tiers import asked_for
@@ -105,33 +103,6 @@ def test_gradebook_csv_and_feedback_say_the_same(
             total = sum(in_csv[key] for key in of_notebook)
             page = (graded.feedback / notebook.student / name / f"{name}.html").read_text()
             assert f"(Score: {total:.1f} /" in page
-
-
-@pytest.mark.ros
-@pytest.mark.slow
-def test_each_check_that_began_can_be_appealed_and_is_judged_the_same_again(
-    graded: GradeReport, handed_in: tuple[SampleNotebook, ...]
-) -> None:
-    refused, appealed = dict[str, str](), 0
-    for row in graded.rows:
-        if row.state not in ("passed", "failed"):
-            continue
-        try:
-            file = write_appeal(graded.path, row.student, row.exercise)
-        except GradingError as error:
-            refused[row.diagnosis] = str(error)
-            continue
-        seen = appeal_file.read(file).seen
-        again = replaying.replay(seen)
-        assert (again.differences, again.notes) == ([], []), row
-        diagnosis = seen.verdict.diagnosis.key if seen.verdict.diagnosis else ""
-        assert (seen.verdict.score, seen.verdict.state) == (row.score, row.state)
-        # That a cell never ended is seen by the grader, and not by the judge, whose diagnosis an appeal repeats.
-        assert diagnosis == row.diagnosis or row.diagnosis == "cell_timed_out"
-        appealed += 1
-    assert appealed > 0
-    assert refused or len(handed_in) < len(SAMPLES)
-    assert all(words.startswith("No evidence of") for words in refused.values())
 
 
 @pytest.mark.ros

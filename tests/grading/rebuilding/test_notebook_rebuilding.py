@@ -76,19 +76,6 @@ def test_a_deleted_check_cell_is_put_back_behind_the_students_own_cells(master: 
     assert "`check-talker` was missing" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
-def test_the_stub_of_a_deleted_answer_does_not_overwrite_the_answer_in_another_cell(
-    master: NotebookNode,
-) -> None:
-    cells = as_submitted(master, **ANSWERS)
-    cells[2] = SubmittedCell(CellType.CODE, "class Talker: 'in a cell of my own'")
-    found = sources(rebuild(master, cells))
-    assert (
-        found.index("# TODO")
-        < found.index("class Talker: 'in a cell of my own'")
-        < found.index("check(Talker)")
-    )
-
-
 def test_of_a_duplicated_answer_the_last_changed_one_counts_and_all_run(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells[2:3] = [
