@@ -212,12 +212,9 @@ def installation() -> tuple[Path, ...]:
 
 
 def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
-    wanted = {_PACKAGE, *_ros_prefixes(variables)}
+    wanted = {_PACKAGE, _PACKAGE.parent / "course_runtime", *_ros_prefixes(variables)}
     for prefix in _python_prefixes():
         wanted.update(path for pattern in _PARTS for path in prefix.glob(pattern))
-    helper = _PACKAGE.parent / "course_runtime"
-    if (helper / "ros2_command").is_dir():
-        wanted.add(helper)
     return _outermost(path for path in wanted if path.exists() and not any(map(path.is_relative_to, SYSTEM)))
 
 

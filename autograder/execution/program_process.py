@@ -1,9 +1,9 @@
 """A process, forked by a fork server, that runs `ros2 run` and a student's program after their slow imports.
 
 Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that has
-already made these imports. It runs the course's own `ros2` (``course_runtime.ros2_command``), so it finds programs as
-usual, and prints the usual messages. Only one thing differs: a Python script for this interpreter becomes another fork,
-not a new process. That fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
+already made these imports. It runs the installed script `ros2`, which finds programs as usual, and prints the usual
+messages. Only one thing differs: a Python script for this interpreter becomes another fork, not a new process. That
+fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
 
 Everything else is started as `ros2 run` starts it: a script for another interpreter, a program in another language,
 and a script that has a module or library of its own whose name is already loaded in this process.
@@ -18,6 +18,7 @@ import importlib
 import io
 import os
 import pkgutil
+import runpy
 import signal
 import subprocess
 import sys
@@ -26,15 +27,17 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
-from course_runtime.python_child import INTERPRETER
-from course_runtime.ros2_command import main as ros2
-from course_runtime.ros2_command import run as ros2_run
+from course_runtime import program_start
+from course_runtime.python_child import INTERPRETER, installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-_OF_SCRIPTS = ("course_runtime.ros2_command.pkg", "ament_index_python.packages", "importlib.metadata", "re")
-"""Modules that are imported by `ros2 run` and by the scripts that setuptools makes."""
+_OF_SCRIPTS = (
+    *("course_runtime.ros2_command.main", "course_runtime.ros2_command.real_installation"),
+    *("course_runtime.ros2_command.run", "ament_index_python.packages", "importlib.metadata", "re"),
+)
+"""Modules that are imported by the script `ros2` that the set-up writes, and by the scripts that setuptools makes."""
 _AT_START = ("sitecustomize", "usercustomize")
 """The modules that Python imports by itself when it starts (documentation of ``site``)."""
 _UNBUFFERED = 2
@@ -93,12 +96,15 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     for standard in (1, 2):
         os.dup2(output, standard)
     os.close(output)
-    sys.argv = ["ros2", *call["words"]]
-    ros2_run.start = _start
-    sys.exit(ros2.main())
+    ros2 = installed_program("ros2")
+    sys.argv = [str(ros2), *call["words"]]
+    if not ros2.exists():
+        os.execvp("ros2", sys.argv)  # the one of the sourced ROS
+    program_start.start = _start
+    runpy.run_path(str(ros2), run_name="__main__")
 
 
-def _start(command: Sequence[str]) -> ros2_run.Process:
+def _start(command: Sequence[str]) -> program_start.Process:
     """Start a program: as a fork if the program cannot tell the difference, else as a new process.
 
     Args:

@@ -5,32 +5,15 @@ from __future__ import annotations
 import argparse
 import shlex
 import signal
-import subprocess
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
+from course_runtime import program_start
 from course_runtime.ros2_command.commands import Outcome, Verb
 from course_runtime.ros2_command.pkg import executable_paths
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
     from types import FrameType
-
-
-class Process(Protocol):
-    """A running program, with the interface of :class:`subprocess.Popen`."""
-
-    def send_signal(self, number: int, /) -> None:
-        """Send a signal to the program."""
-        ...
-
-    def wait(self) -> int:
-        """Wait for the program to end. Return its exit code, negative if a signal ended it."""
-        ...
-
-
-start: Callable[[list[str]], Process] = subprocess.Popen
-"""The function that starts a program. The grader replaces it by one that starts the same program faster."""
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
@@ -63,7 +46,7 @@ def _run(args: argparse.Namespace) -> Outcome:
     # The terminal also sends Ctrl-C to the program, which ends in its own way. As an exception in this process,
     # Ctrl-C could come just after the program's start or end, before this is recorded.
     signal.signal(signal.SIGINT, lambda *_: None)
-    process = start([*shlex.split(args.prefix or ""), str(program), *args.argv])
+    process = program_start.start([*shlex.split(args.prefix or ""), str(program), *args.argv])
 
     def pass_on(number: int, _frame: FrameType | None) -> None:
         process.send_signal(number)

@@ -91,6 +91,7 @@ UNEQUAL = re.compile(
     r"|(?m:^(?:Extension modules: |Current thread's C stack|  Binary file |  <truncated rest ).*\n)"
     # A crash shows the calls that a fork began with, after the program's own.
     r'|  File "(?:[^"]*/(?:autograder/(?:boxes|execution)|course_runtime/ros2_command)/[^"]*|<frozen runpy>)", .*\n'
+    r'|  File "[^"]*/bin/ros2", .*\n'
 )
 
 
