@@ -11,7 +11,7 @@ from nbgrader.utils import compute_checksum
 from autograder import standard_output
 from autograder.command_name import COMMAND
 from autograder.course import SOLUTION
-from autograder.masters.code_cells import exercise_points
+from autograder.masters.check_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
 from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import solution_files

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.course import SOLUTION, WHY
-from autograder.masters.code_cells import exercise_points, find_region, has_magic, shell_script, written_file
+from autograder.masters.check_cells import exercise_points
+from autograder.masters.code_cells import find_region, has_magic, shell_script, written_file
 from autograder.masters.master_cells import CellRole, MasterCell
 from autograder.masters.master_files import MasterError
 from autograder.masters.source_notebooks import Points, named_cells

@@ -29,15 +29,13 @@ from nbformat import NotebookNode, from_dict
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from autograder import course, exercises
+from autograder.masters.check_cells import CheckCall, exercise_points, read_check
 from autograder.masters.code_cells import (
-    CheckCall,
-    exercise_points,
     find_model_answer,
     find_region,
     has_magic,
     mentions_a_region,
     python_of,
-    read_check,
 )
 from autograder.masters.master_cells import CellRole, MasterCell, parse_master, with_copies
 from autograder.masters.master_files import CellError, MasterError, before_and_after, chapter_path

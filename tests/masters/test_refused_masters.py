@@ -14,7 +14,7 @@ import pytest
 
 import autograder.masters
 from autograder import exercises
-from autograder.masters.code_cells import CheckCall, exercise_points
+from autograder.masters.check_cells import CheckCall, exercise_points
 from autograder.masters.master_files import FAULTS, MasterError, masters
 from autograder.masters.source_notebooks import Points, source_notebook
 
