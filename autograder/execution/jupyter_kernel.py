@@ -12,7 +12,6 @@ import secrets
 import select
 import signal
 import socket
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -21,6 +20,7 @@ from autograder.boxes.admission import NotAdmitted
 from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.limit_guards import INTERVAL
 from autograder.boxes.run_limits import Ended, wall_time
+from autograder.execution.kernel_channels import IOPUB, SHELL, Channels
 from autograder.execution.kernel_desk_messages import (
     FURTHER_BYTES,
     MOST_ESCAPED,
@@ -40,35 +40,12 @@ if TYPE_CHECKING:
     from autograder.execution.notebook_processes import NotebookProcesses
 
 
-SHELL, IOPUB = 1, 2
-"""The numbers of the used channels; the path of each channel's socket ends with its number."""
 _DESK_SECONDS = 30.0
 """Seconds for a desk to take an order, to end, or to read what an ended kernel has left."""
 
 
 class KernelFailed(RuntimeError):
     """The kernel did not start or did not answer; the message gives the reason."""
-
-
-@dataclass(frozen=True)
-class Channels:
-    """The channels with which a kernel and its desk start.
-
-    Attributes:
-        folder: The folder of the kernel's sockets.
-        key: The key that signs the messages.
-        shell: The listening socket for requests.
-        iopub: The listening socket for outputs.
-        log: A pipe for what the kernel prints outside any cell; further text is dropped once the pipe is full.
-        orders: The desk's end of the socket for its orders.
-    """
-
-    folder: Path
-    key: str
-    shell: int
-    iopub: int
-    log: int
-    orders: int
 
 
 class Kernel:

@@ -24,7 +24,7 @@ from autograder.boxes.process_isolation import filter_system_calls
 from autograder.boxes.run_limits import Limits
 from autograder.boxes.seccomp_filter import filter_for_desks
 from autograder.execution.executed_cells import Budget, OutputCollector
-from autograder.execution.jupyter_kernel import IOPUB, SHELL
+from autograder.execution.kernel_channels import IOPUB, SHELL
 from autograder.execution.kernel_desk_messages import DeskAnswer, DeskOrder, Do, Said
 from autograder.messages.json_lines import Hangup, Lines
 

@@ -21,7 +21,7 @@ from traitlets.config import Config
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from autograder.execution import kernel_desk
-from autograder.execution.jupyter_kernel import IOPUB, SHELL
+from autograder.execution.kernel_channels import IOPUB, SHELL
 from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.fork_server import Addresses
     from autograder.boxes.run_limits import Limits
-    from autograder.execution.jupyter_kernel import Channels
+    from autograder.execution.kernel_channels import Channels
 
 SHARED_FOLDER = Path("/run/judge")
 """The path, in the student's box, of the folder that the box shares with its grader."""

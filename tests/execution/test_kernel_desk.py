@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.fork_server import Addresses
-    from autograder.execution.jupyter_kernel import Channels
+    from autograder.execution.kernel_channels import Channels
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK = Cell("1", check=CellCheck("lab.one", "One", points=10, worth=10, limit=2))

@@ -23,7 +23,7 @@ from autograder.safe_files import scratch_folder
 from autograder.verdict import Diagnosis, State, Verdict, failed
 
 if TYPE_CHECKING:
-    from autograder.execution.jupyter_kernel import Channels
+    from autograder.execution.kernel_channels import Channels
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 
