@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.subject import InOwnProcesses
 from autograder.kit.mistakes.hangs import LOOPS
-from autograder.kit.runners import tells_of_a_build
+from autograder.kit.output.workspace_reports import tells_of_a_build
 from autograder.messages import judge_messages, run_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspace_messages import Source

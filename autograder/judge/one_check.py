@@ -38,7 +38,7 @@ from autograder.judge.verdicts.exercise_faults import of_exercise
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import UNKNOWN, Exercise
-from autograder.kit.runners import runner_trouble
+from autograder.kit.output.workspace_reports import runner_trouble
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.machine_fitness import JudgeFailed
 from autograder.judge.subject import InOwnProcesses
-from autograder.kit.evidence import REPORTS
+from autograder.kit.output.spoken_lines import REPORTS
 from autograder.messages import run_messages, workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.judge_messages import Collect, FromNotebook, Sources

@@ -17,7 +17,9 @@ from autograder.judge.recording_differences import differences
 from autograder.judge.verdicts.deciding import is_certain, judge
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
+from autograder.kit.output.launched_processes import all_are_there, processes
+from autograder.kit.output.workspace_reports import report_of
+from autograder.kit.runners import RunsPrograms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

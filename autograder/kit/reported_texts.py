@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.evidence import spoken_by
 from autograder.kit.model import Advice
+from autograder.kit.output.spoken_lines import spoken_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

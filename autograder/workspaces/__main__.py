@@ -18,13 +18,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.kit.runners import (
-    Launches,
-    LaunchesFromPackage,
-    RunsPrograms,
-    failed_line,
-    runner_from_word,
-)
+from autograder.kit.output.workspace_reports import failed_line
+from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms, runner_from_word
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.builds.students_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of

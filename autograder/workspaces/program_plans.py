@@ -13,14 +13,8 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import course
-from autograder.kit.runners import (
-    ALONE,
-    AMENT_PACKAGE,
-    LaunchesFromPackage,
-    RunsProgram,
-    RunsPrograms,
-    ServesInterface,
-)
+from autograder.kit.output.workspace_reports import AMENT_PACKAGE
+from autograder.kit.runners import ALONE, LaunchesFromPackage, RunsProgram, RunsPrograms, ServesInterface
 from autograder.workspaces.builds.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import LAUNCH_LANGUAGES, WORKSPACE, launch_files
 from autograder.workspaces.sources import ByteBudget

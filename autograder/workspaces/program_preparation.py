@@ -11,7 +11,12 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.course import NoCourse
-from autograder.kit.runners import Interface, PackageReport, WorkspaceReport, workspace_report_line
+from autograder.kit.output.workspace_reports import (
+    Interface,
+    PackageReport,
+    WorkspaceReport,
+    workspace_report_line,
+)
 from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.builds.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import MAX_LOOK, WORKSPACE, launch_files

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder import process_trees
-from autograder.kit.runners import Process, process_line
+from autograder.kit.output.launched_processes import Process, process_line
 from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import pytest
 
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
+from autograder.kit.output.workspace_reports import PackageReport, WorkspaceReport, workspace_report_line
 from tests.cases import cases
 
 PACKAGE = "my_robot_pkg"

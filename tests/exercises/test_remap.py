@@ -6,14 +6,9 @@ import pytest
 
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.output.launched_processes import Process, process_line
+from autograder.kit.output.workspace_reports import PackageReport, WorkspaceReport, workspace_report_line
 from autograder.kit.recipes.launch_file import Launched
-from autograder.kit.runners import (
-    PackageReport,
-    Process,
-    WorkspaceReport,
-    process_line,
-    workspace_report_line,
-)
 from tests.cases import cases, named_cases
 
 STRING = "std_msgs/msg/String"

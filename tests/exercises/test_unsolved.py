@@ -11,7 +11,7 @@ from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.mistakes.unfinished import NOTHING_THERE
-from autograder.kit.runners import WorkspaceReport, workspace_report_line
+from autograder.kit.output.workspace_reports import WorkspaceReport, workspace_report_line
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())

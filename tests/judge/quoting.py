@@ -12,9 +12,11 @@ import re2
 
 from autograder import exercises
 from autograder.judge.verdicts import deciding
-from autograder.kit.evidence import Event, Evidence, Part, spoken_by, without_tracebacks
+from autograder.kit.evidence import without_tracebacks
+from autograder.kit.output.spoken_lines import spoken_by
 
 if TYPE_CHECKING:
+    from autograder.kit.evidence import Event, Evidence, Part
     from autograder.verdict import Verdict
 
 

@@ -10,7 +10,7 @@ from autograder.judge import notebook_subject
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.notebook_subject import NotebookPath, NotebookSubject
 from autograder.kit.mistakes.hangs import LOOPS
-from autograder.kit.runners import WorkspaceReport, workspace_report_line
+from autograder.kit.output.workspace_reports import WorkspaceReport, workspace_report_line
 from autograder.messages.judge_messages import Stacks
 from autograder.messages.run_messages import Output
 from tests.cases import named_cases

@@ -13,7 +13,7 @@ import pytest
 
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.path_subject import PathSubject, as_words
-from autograder.kit.evidence import REPORTS
+from autograder.kit.output.spoken_lines import REPORTS
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.messages.judge_messages import Check, Collect, Constructed, Judged, Sources
 from autograder.messages.run_messages import Exited, Output

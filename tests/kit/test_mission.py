@@ -18,7 +18,7 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
 from autograder.kit.mission.track import ways
-from autograder.kit.runners import Process, process_line
+from autograder.kit.output.launched_processes import Process, process_line
 from tests.cases import cases
 
 if TYPE_CHECKING:

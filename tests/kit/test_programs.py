@@ -13,8 +13,8 @@ from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Referenc
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import EntryPoint
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+from autograder.kit.output.workspace_reports import PackageReport, WorkspaceReport, workspace_report_line
 from autograder.kit.recipes.programs import LabProgram, Programs
-from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
 from tests.cases import cases
 
 if TYPE_CHECKING:

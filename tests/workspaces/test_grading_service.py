@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from autograder.kit.evidence import REPORTS
+from autograder.kit.output.spoken_lines import REPORTS
 from autograder.kit.runners import ALONE
 from autograder.messages import run_messages
 from autograder.messages import workspace_messages as messages

@@ -16,7 +16,12 @@ from autograder.authoring.answer_bank import answers_folder
 from autograder.boxes.sandbox import why_impossible
 from autograder.judge import command_check
 from autograder.kit.evidence import Event, Part
-from autograder.kit.runners import WorkspaceReport, failed_line, runner_trouble, workspace_report_line
+from autograder.kit.output.workspace_reports import (
+    WorkspaceReport,
+    failed_line,
+    runner_trouble,
+    workspace_report_line,
+)
 from autograder.workspaces.__main__ import main
 from tests.copies import copied
 from tests.measure.bank import answer_named

@@ -11,15 +11,12 @@ import pytest
 from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.runners import (
+from autograder.kit.output.launched_processes import Process, process_line, processes, remappings
+from autograder.kit.output.workspace_reports import (
     MAX_LINE,
     Interface,
     PackageReport,
-    Process,
     WorkspaceReport,
-    process_line,
-    processes,
-    remappings,
     report_of,
     workspace_report_line,
 )

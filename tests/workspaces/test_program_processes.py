@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.kit.runners import PROCESS_MARK
+from autograder.kit.output.launched_processes import PROCESS_MARK
 from autograder.process_trees import descendants, kill, known
 from autograder.workspaces import __main__ as workspaces_command
 from autograder.workspaces import program_processes

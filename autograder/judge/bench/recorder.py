@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench.unreadable import FLOOD, UnreadableSubject
 from autograder.judge.machine_fitness import Patience
-from autograder.kit.evidence import REPORTS, Event, Part
+from autograder.kit.evidence import Event, Part
+from autograder.kit.output.spoken_lines import REPORTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -13,7 +13,8 @@ from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
 from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.runners import BUILDING, report_of
+from autograder.kit.output.workspace_reports import report_of
+from autograder.kit.runners import BUILDING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from autograder.kit.evidence import spoken_by
 from autograder.kit.outcomes import STATUS
+from autograder.kit.output.spoken_lines import spoken_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.judge.timeline.event_kinds import HEARD, KINDS, label_of
-from autograder.kit.evidence import spoken_by
-from autograder.kit.runners import build_ended
+from autograder.kit.output.spoken_lines import spoken_by
+from autograder.kit.output.workspace_reports import build_ended
 from autograder.verdict import Moment
 
 if TYPE_CHECKING:

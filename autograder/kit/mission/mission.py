@@ -23,8 +23,8 @@ from autograder.kit.mission.steps import Goal, Journey, Step
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
+from autograder.kit.output.launched_processes import processes
 from autograder.kit.recipes.own_scenario import QUIET
-from autograder.kit.runners import processes
 from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import re2
 from autograder.kit.counterparts import Qos
 from autograder.kit.mistakes.hangs import UNSPUN, answered, something_spins
 from autograder.kit.model import Advice, Mistake, card_words, mistake
+from autograder.kit.output.launched_processes import processes
 from autograder.kit.reported_texts import said_first_after
-from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

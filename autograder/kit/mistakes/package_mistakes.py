@@ -12,12 +12,13 @@ from autograder import known_errors
 from autograder.kit.bench import Pace
 from autograder.kit.mistakes.traceback_lines import own_line
 from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
-from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
+from autograder.kit.output.workspace_reports import WorkspaceReport, report_of
+from autograder.kit.runners import BUILDING
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.runners import PackageReport
+    from autograder.kit.output.workspace_reports import PackageReport
 
 _WORDS = card_words(__file__)
 

@@ -10,14 +10,8 @@ from autograder import known_errors
 from autograder.kit.mistakes.crashes import OTHER_CRASHES
 from autograder.kit.mistakes.package_mistakes import BUILD, EntryPoint, in_package
 from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
-from autograder.kit.runners import (
-    Launches,
-    LaunchesFromPackage,
-    RunsProgram,
-    RunsPrograms,
-    ServesInterface,
-    processes,
-)
+from autograder.kit.output.launched_processes import processes
+from autograder.kit.runners import Launches, LaunchesFromPackage, RunsProgram, RunsPrograms, ServesInterface
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -10,7 +10,7 @@ from autograder.kit.giving_up import ended_at_once
 from autograder.kit.mistakes.common_mistakes import WORDS, worked
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Mistake, card_words, filled_in, mistake
-from autograder.kit.runners import report_of
+from autograder.kit.output.workspace_reports import report_of
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part

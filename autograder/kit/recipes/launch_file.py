@@ -17,16 +17,9 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
 from autograder.kit.mistakes import package_mistakes, runner_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.runners import (
-    ALONE,
-    BUILDING,
-    Process,
-    all_are_there,
-    as_run,
-    processes,
-    remappings,
-    report_of,
-)
+from autograder.kit.output.launched_processes import Process, all_are_there, as_run, processes, remappings
+from autograder.kit.output.workspace_reports import report_of
+from autograder.kit.runners import ALONE, BUILDING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,7 +11,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event
 from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Finding
-from autograder.kit.runners import processes
+from autograder.kit.output.launched_processes import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

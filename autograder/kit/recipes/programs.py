@@ -13,7 +13,8 @@ from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
 from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
-from autograder.kit.runners import RunsPrograms, report_of
+from autograder.kit.output.workspace_reports import report_of
+from autograder.kit.runners import RunsPrograms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -10,14 +10,8 @@ from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding, Mistake, card_words, filled_in
-from autograder.kit.runners import (
-    AMENT_PACKAGE,
-    BUILDING,
-    Interface,
-    PackageReport,
-    ServesInterface,
-    report_of,
-)
+from autograder.kit.output.workspace_reports import AMENT_PACKAGE, Interface, PackageReport, report_of
+from autograder.kit.runners import BUILDING, ServesInterface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,7 +11,8 @@ from exercise_1_1 import remap
 from autograder.kit import Criterion, Finding, Mistake, mistake, unless
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import package_name, package_of
-from autograder.kit.runners import LaunchesFromPackage, report_of
+from autograder.kit.output.workspace_reports import report_of
+from autograder.kit.runners import LaunchesFromPackage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.timeline.verdict_timeline import MAX_MOMENTS, moments
-from autograder.kit import runners
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.runners import WorkspaceReport, workspace_report_line
+from autograder.kit.output import launched_processes, workspace_reports
+from autograder.kit.output.workspace_reports import WorkspaceReport, workspace_report_line
 
 if TYPE_CHECKING:
     from autograder.verdict import Moment
@@ -24,7 +24,7 @@ def told(
 
 
 def test_brackets_without_an_end_are_no_report() -> None:
-    for mark in (runners.WORKSPACE_MARK, runners.PROCESS_MARK):
+    for mark in (launched_processes.PROCESS_MARK, workspace_reports.WORKSPACE_MARK):
         assert told(Event(0.1, "output", "stdout", {"text": f"{mark}{'[' * 3900}"})) is not None
 
 

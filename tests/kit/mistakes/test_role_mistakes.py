@@ -12,6 +12,7 @@ from autograder.kit.mission.mission import Mission
 from autograder.kit.oracle.action_server import SendsGoals
 from autograder.kit.oracle.goals_seen import GoalsSeen
 from autograder.kit.oracle.same_as_solution import SameAsSolution
+from autograder.kit.output.workspace_reports import WorkspaceReport, workspace_report_line
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.program import Program
@@ -19,7 +20,7 @@ from autograder.kit.recipes.publisher import Publisher
 from autograder.kit.recipes.servers import Asks
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.subscriber import Subscriber
-from autograder.kit.runners import LaunchesFromPackage, RunsProgram, WorkspaceReport, workspace_report_line
+from autograder.kit.runners import LaunchesFromPackage, RunsProgram
 from tests.cases import named_cases
 
 if TYPE_CHECKING:

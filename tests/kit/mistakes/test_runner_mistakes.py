@@ -8,8 +8,9 @@ import pytest
 
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.output.launched_processes import Process, process_line
 from autograder.kit.recipes.own_scenario import OwnScenario
-from autograder.kit.runners import Launches, Process, RunsProgram, process_line
+from autograder.kit.runners import Launches, RunsProgram
 
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
