@@ -19,7 +19,7 @@ from autograder.kit.model import UNKNOWN, Advice, Criterion, Exercise, Finding, 
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from autograder.kit.evidence import Event, Evidence
     from autograder.messages.judge_messages import OwnLine
@@ -124,16 +124,8 @@ def diagnose(
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
     """
-    if found := _recognized(exercise, evidence):
-        mistake, advice = found
-        in_a_notebook = evidence.in_a_notebook
-        text, next_step = (
-            _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
-            for words in (f"{advice.text} {own_lines_in_words(evidence)}".rstrip(), advice.next_step)
-        )
-        # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
-        key = advice.key or mistake.key
-        return Diagnosis(key, text, next_step, hidden=exercise.hides_causes), advice.traceback
+    if found := _recognized(exercise.mistakes, evidence):
+        return _of_known(exercise, evidence, *found), found[1].traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     point = parting_point(evidence)
@@ -148,8 +140,18 @@ def diagnose(
     return Diagnosis(UNKNOWN, _cut(text, 2 * MAX_WORDS), next_step), ""
 
 
-def _recognized(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
-    for mistake in exercise.mistakes:
+def _of_known(exercise: Exercise, evidence: Evidence, mistake: Mistake, advice: Advice) -> Diagnosis:
+    """Return the diagnosis of a known mistake."""
+    text, next_step = (
+        _cut(of_its_kind(shortened(visible(words)), evidence.in_a_notebook), 2 * MAX_WORDS)
+        for words in (f"{advice.text} {own_lines_in_words(evidence)}".rstrip(), advice.next_step)
+    )
+    # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
+    return Diagnosis(advice.key or mistake.key, text, next_step, hidden=exercise.hides_causes)
+
+
+def _recognized(mistakes: Iterable[Mistake], evidence: Evidence) -> tuple[Mistake, Advice] | None:
+    for mistake in mistakes:
         if (advice := mistake.recognize(evidence)) is not None:
             return mistake, advice
     return None
@@ -157,18 +159,16 @@ def _recognized(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
     """Return True if the evidence proves a mistake, no matter how busy the machine was."""
-    found = _recognized(exercise, evidence)
+    found = _recognized(exercise.mistakes, evidence)
     return found is not None and found[0].certain
 
 
 def endless_loop(exercise: Exercise, stacks: Evidence) -> Verdict | None:
     """Return a fail if the stacks of a subject prove a loop without an end, whatever else it did; else None."""
-    known = (one for one in exercise.mistakes if one.key == ENDLESS_LOOP.key and one.certain)
-    proven = tuple(one for one in known if one.recognize(stacks))
-    if not proven:
+    loops = (one for one in exercise.mistakes if one.key == ENDLESS_LOOP.key and one.certain)
+    if not (found := _recognized(loops, stacks)):
         return None
-    diagnosis, _ = diagnose(replace(exercise, mistakes=proven), stacks)
-    return failed(exercise.id, exercise.title, float(exercise.points), diagnosis)
+    return failed(exercise.id, exercise.title, float(exercise.points), _of_known(exercise, stacks, *found))
 
 
 def _cut(text: str, limit: int = MAX_WORDS) -> str:
@@ -178,7 +178,7 @@ def _cut(text: str, limit: int = MAX_WORDS) -> str:
 
 def _causes(exercise: Exercise, evidence: Evidence, verdict: Verdict) -> Sequence[Sequence[str]]:
     """Return the methods and classes whose lines the card quotes, each after others that do the same."""
-    if known := _recognized(exercise, evidence):
+    if known := _recognized(exercise.mistakes, evidence):
         return [[name] for name in known[1].uses]
     if point := parting_point(evidence):
         return point.causes
