@@ -219,8 +219,8 @@ MAY_PARSE = {
     "grading/rebuilding/cell_matching.py": "ast",  # the stubs of the master
     "grading/rebuilding/trusted_master.py": "ast",  # the master
     "grading/returning/page_exporter.py": "nbconvert",  # the course's own text
-    "workspaces/graded_builds.py": "xml",  # a package.xml of at most 20,000 bytes
     "workspaces/builds/plain_packages.py": "ast",  # a setup.py of at most 50,000 bytes
+    "workspaces/builds/simplified_sources.py": "xml",  # a package.xml of at most 20,000 bytes
     "workspaces/packages.py": "ast catkin_pkg xml",  # files of at most 50,000 bytes, 100,000 together
 }
 """What parses text in the processes of the grader, and why a student's text cannot keep them busy."""

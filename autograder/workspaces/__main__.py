@@ -22,10 +22,10 @@ from autograder.kit.output.workspace_reports import failed_line
 from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms, runner_from_word
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.builds.students_builds import StudentsBuilds
+from autograder.workspaces.launch_watching import watched
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.program_plans import plan_for, ros2, single_program_command
 from autograder.workspaces.program_preparation import Preparation
-from autograder.workspaces.program_processes import print_line, watched
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,6 +98,11 @@ def _run(launch: Prepared) -> int:
 
 def _listen_to_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def print_line(line: str) -> None:
+    """Print a line in one write, so that other output to the same pipe cannot come in between."""
+    os.write(1, f"{line}\n".encode("utf-8", "replace"))
 
 
 if __name__ == "__main__":

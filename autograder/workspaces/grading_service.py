@@ -30,10 +30,10 @@ from autograder.workspaces.builds.cached_builds import BuildTookTooLong
 from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import ProgramJob, output_lines
+from autograder.workspaces.launch_watching import watched
 from autograder.workspaces.packages import WORKSPACE, workspace_of
 from autograder.workspaces.program_plans import course_interfaces, plan_for, ros2, single_program_command
 from autograder.workspaces.program_preparation import Preparation, no_sources_line
-from autograder.workspaces.program_processes import watched
 from autograder.workspaces.sources import BadSources, receive_sources
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from autograder.safe_files import HeldFolder
 from autograder.standard_output import collect, split_lines
 from autograder.workspaces.builds.build_artifacts import pack
 from autograder.workspaces.builds.install_folder import BESIDE, without_workspaces
-from autograder.workspaces.program_processes import OwnSession
+from autograder.workspaces.own_session import OwnSession
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from autograder.standard_output import Collected, collect
-from autograder.workspaces.program_processes import OwnSession
+from autograder.workspaces.own_session import OwnSession
 
 FOREVER = 1000.0
 
@@ -95,7 +95,7 @@ def test_it_may_end_by_itself_after_an_interrupt() -> None:
 
 KILLED = """
 import os, sys
-from autograder.workspaces.program_processes import OwnSession
+from autograder.workspaces.own_session import OwnSession
 program = OwnSession(["/bin/sh", "-c", sys.argv[1]], os.environ)
 said = b""
 while said.count(b"\\n") < 3:

@@ -11,7 +11,7 @@ import pytest
 from autograder.messages.workspace_messages import Source
 from autograder.workspaces import packages
 from autograder.workspaces.builds import cached_builds
-from autograder.workspaces.graded_builds import simplified
+from autograder.workspaces.builds.simplified_sources import simplified
 from autograder.workspaces.sources import BadSources, SourceTree
 
 sys.path.insert(0, str(Path(__file__).parent))

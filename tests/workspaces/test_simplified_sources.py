@@ -9,7 +9,7 @@ import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
 from autograder.messages.workspace_messages import Source
-from autograder.workspaces.graded_builds import simplified
+from autograder.workspaces.builds.simplified_sources import simplified
 from autograder.workspaces.packages import sources_of
 from autograder.workspaces.sources import SourceTree
 

@@ -32,8 +32,8 @@ from autograder.notebook.checking.judge_link import MAX_TEXT
 from autograder.notebook.nodes.spin_threads import SpinFailure, SpinThreads, raise_in_thread
 from autograder.own_lines import own_lines, own_lines_of_files
 from autograder.workspaces.jobs import output_lines
+from autograder.workspaces.own_session import OwnSession
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.program_processes import OwnSession
 from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
 from course_runtime.python_child import python_child
 

@@ -55,7 +55,7 @@ def test_the_build_of_a_killed_builder_is_ended_before_another_begins(empty_cach
     program = """
 import os, signal
 from autograder.workspaces.builds import build_cache as cache
-from autograder.workspaces.program_processes import OwnSession
+from autograder.workspaces.own_session import OwnSession
 # The session's first process is gone, and one that it has started goes on writing.
 below = "while true; do mkdir -p half; echo x > half/$$; done"
 command = ["/bin/sh", "-c", f"({below}) & echo $!; wait"]

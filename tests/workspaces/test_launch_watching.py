@@ -14,9 +14,10 @@ import pytest
 from autograder.kit.output.launched_processes import PROCESS_MARK
 from autograder.process_trees import descendants, kill, known
 from autograder.workspaces import __main__ as workspaces_command
-from autograder.workspaces import program_processes
+from autograder.workspaces import launch_watching
+from autograder.workspaces.__main__ import print_line
+from autograder.workspaces.launch_watching import watched
 from autograder.workspaces.program_preparation import Prepared
-from autograder.workspaces.program_processes import print_line, watched
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,8 +37,8 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
     monkeypatch: pytest.MonkeyPatch, more: str, most: int
 ) -> None:
     """Twenty of these, with command lines of 1.2 MB, took 80 MB of the grader's memory each second."""
-    monkeypatch.setattr(program_processes, "MAX_COMMAND_LINE", 2_000)
-    monkeypatch.setattr(program_processes, "MAX_COMMAND_LINES", 5)
+    monkeypatch.setattr(launch_watching, "MAX_COMMAND_LINE", 2_000)
+    monkeypatch.setattr(launch_watching, "MAX_COMMAND_LINES", 5)
     reported: list[str] = []
     starts_it = "import subprocess, sys; subprocess.run(sys.argv[1:])"
     with subprocess.Popen(
