@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import textwrap
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder import exercises
@@ -18,18 +17,17 @@ from autograder.authoring.mutants import recorded_mutants
 from autograder.authoring.mutants.survey import survey, survey_by_judge
 from autograder.authoring.mutants.survey_lines import lines
 from autograder.authoring.mutants.trials import NotOnPaper
+from autograder.authoring.tried_answers import SLOW_STEP, TriedAnswer
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
 from autograder.judge import evidence_files
 from autograder.kit.model import UNKNOWN
 from autograder.safe_files import HeldFolder
-from autograder.verdict import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from autograder.kit.evidence import Evidence
     from autograder.kit.model import Exercise
     from autograder.verdict import Verdict
 
@@ -40,11 +38,6 @@ waits.
 """
 
 
-SLOW = 10.0
-"""Seconds from which on a check is slow, so that its author is told which step took longest."""
-LONG = 3.0
-"""Seconds from which on a wait between two events is long enough to be named."""
-_SLOW_STEP = "the slowest step: "
 NAMED, LOCATED, NEITHER = "named", "located", "neither"
 """How the card of a wrong answer tells the mistake: by its cause or effect, by the moment of the run, or not at all."""
 
@@ -66,62 +59,6 @@ class _Surprise:
     name: str
     objection: str
     card: str
-
-
-@dataclass(frozen=True)
-class _Tried(Answer):
-    """An answer that also tells its author what took long.
-
-    Attributes:
-        folder: The folder for the evidence, a file for each answer, such as ``wrong/topic_name.py.txt``, with a line
-            for each event; None to write none.
-    """
-
-    folder: Path | None = None
-
-    def verdict(self, seed: str) -> bytes:
-        """Judge the answer in this process, and write its evidence into the file. Return the verdict as JSON.
-
-        If the check was slow, the last remark says which step was.
-        """
-        verdict, found = self.checked(seed)
-        if found is not None and self.folder is not None:
-            file = self.folder / f"{self.short_name}.txt"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text("".join(_transcript(found.evidence)), encoding="utf-8")
-        is_slow = verdict.seconds > SLOW
-        if found is not None and is_slow and (step := slowest_step(found.evidence, verdict.seconds)):
-            verdict = replace(verdict, remarks=(*verdict.remarks, f"{_SLOW_STEP}{step}"))
-        return to_json(verdict)
-
-
-def slowest_step(evidence: Evidence, seconds: float) -> str:
-    """Return in words between which two events of a check most time passed; empty if no wait between two was long.
-
-    Args:
-        seconds: The duration of the check, with the build and the start of the subject, of which there are no events.
-    """
-    waits = [(0.0, "")]
-    looks = [evidence.before, evidence] if evidence.before is not None else [evidence]
-    for part, real_time in ((part, look.real_time) for look in looks for part in look):
-        where = f"in “{part.name}”{', in real time' * real_time}"
-        for one, other in itertools.pairwise(part.events):
-            between = f"between {one.kind} {one.name} and {other.kind} {other.name}"
-            waits.append((other.t - one.t, f"{where}, {between}"))
-        seconds -= part.events[-1].t if part.events else 0.0
-    longest, when = max(waits)
-    return f"{longest:.1f} s {when}" if longest >= max(seconds, LONG) else ""
-
-
-def _transcript(evidence: Evidence) -> Iterator[str]:
-    if evidence.before is not None:
-        yield from _transcript(evidence.before)
-        yield "\n"
-    for part in evidence:
-        yield f"== {part.name} {'in real time ' * evidence.real_time}{dict(part.inputs)}\n"
-        for event in part.events:
-            stepped = f" sim {event.sim:.2f}" if event.sim is not None else ""
-            yield f"{event.t:8.3f}{stepped}  {event.kind} {event.name} {dict(event.data)}\n"
 
 
 def try_exercise(
@@ -162,7 +99,7 @@ def try_exercise(
         return False
     # `only` asks about single answers, so whatever concerns the whole exercise is left out.
     gifts = [] if only else list(_of_unsolved(exercise, wanted))
-    wanted = [_Tried(**vars(answer), folder=transcript) for answer in wanted]
+    wanted = [TriedAnswer(**vars(answer), folder=transcript) for answer in wanted]
     told: Counter[str] = Counter()
     surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell, told=told)
     for surprise in surprises:
@@ -295,7 +232,7 @@ def _judged(
             key = f"{key}: {how}"
         tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
         for remark in verdict.remarks:
-            if remark.startswith(_SLOW_STEP):
+            if remark.startswith(SLOW_STEP):
                 tell(f"        {verdict.seconds:.0f} s; {remark}")
         if objection:
             surprises.setdefault(answer.name, _Surprise(answer.short_name, objection, card_text(verdict)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.authoring.exercise_trial import slowest_step
+from autograder.authoring.tried_answers import slowest_step
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 REFERENCE = Reference("lab.relay", {})

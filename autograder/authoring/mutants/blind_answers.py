@@ -42,8 +42,7 @@ def blind_answers(task: PaperTask) -> Iterator[Mutant]:
     """Yield the answers that do not look, as programs for paper; nothing if the inputs are not drawn by name."""
     if not (task.exercise.is_drawn and task.parts):
         return
-    is_node = bool(task.reference.interface)
-    react = _reactions if is_node else _returned
+    react = _reactions if task.reference.interface else _returned
     drawings = [react(part) for part in task.parts]
     first = drawings[0]
     if len(first) < 2:
@@ -57,17 +56,30 @@ def blind_answers(task: PaperTask) -> Iterator[Mutant]:
         (LAST, [first[0], first[-1]], {}),
         (BY_HEART, [first[0], first[usual]], table),
     ):
-        data = {"reactions": reactions, "known": known, "interface": task.reference.interface}
-        data |= {"qos": task.reference.qos, "parameters": _parameters(task.parts[0])}
-        base = BlindNode.__name__ if is_node else recall.__name__
-        makes = f"type({task.root!r}, ({base},), {{'data': data}})" if is_node else f"partial({base}, data)"
-        text = (
-            "import json\nfrom functools import partial\n"
-            f"from {__name__} import {base}\n"
-            f"data = json.loads({json.dumps(data, default=dict)!r})\n{task.root} = {makes}\n"
-        )
         key = f"{OPERATOR}:{kind.replace(' ', '_')}"
-        yield Mutant(key, OPERATOR, kind, 0, "", -1, "", "", 1, text)
+        yield Mutant(key, OPERATOR, kind, 0, "", -1, "", "", 1, _program(task, reactions, known))
+
+
+def _program(task: PaperTask, reactions: Sequence[Reaction], known: Mapping[str, Reaction]) -> str:
+    """Return the program of an answer: a node, or a function, with a table of reactions.
+
+    Args:
+        task: The exercise on paper.
+        reactions: The reaction at the start, and those to the inputs in their order; the last one is repeated.
+        known: The reactions to inputs that the answer recognizes, by their texts.
+    """
+    data = {"reactions": reactions, "known": known, "interface": task.reference.interface}
+    data |= {"qos": task.reference.qos, "parameters": _parameters(task.parts[0])}
+    base, makes = (
+        (BlindNode.__name__, f"type({task.root!r}, ({BlindNode.__name__},), {{'data': data}})")
+        if task.reference.interface
+        else (recall.__name__, f"partial({recall.__name__}, data)")
+    )
+    return (
+        "import json\nfrom functools import partial\n"
+        f"from {__name__} import {base}\n"
+        f"data = json.loads({json.dumps(data, default=dict)!r})\n{task.root} = {makes}\n"
+    )
 
 
 def _reactions(part: Part) -> list[Reaction]:

@@ -23,8 +23,10 @@ _OTHERS = {
     **{axis: tuple(other for other in _AXES if other != axis) for axis in _AXES},
 }
 """Fields and sides that are taken for each other."""
-_WHOLE = {".linear.x": ".angular.z", ".angular.z": ".linear.x"}
-_SOME = ("min({0})", "max({0})", "sum({0})/len({0})", "min({0}[:3])", "min([*{0}[-3:], *{0}[:4]])")
+_VELOCITIES = {".linear.x": ".angular.z", ".angular.z": ".linear.x"}
+"""The two numbers of a Twist that a robot on wheels obeys."""
+_OF_ALL = ("min({0})", "max({0})", "sum({0})/len({0})", "min({0}[:3])", "min([*{0}[-3:], *{0}[:4]])")
+"""Values of a whole list in place of one element."""
 
 
 def other_field(code: Code) -> Iterator[Edit]:
@@ -40,7 +42,7 @@ def other_field(code: Code) -> Iterator[Edit]:
             others |= known.get(code.source(attribute.value), set())
         for other in sorted(others - {attribute.attr}):
             yield code.tail_replaced(attribute, attribute.attr, other, f"{other} for {attribute.attr}")
-        for path, other in _WHOLE.items():
+        for path, other in _VELOCITIES.items():
             source = code.source(attribute)
             if source.endswith(path):
                 yield code.replaced(attribute, source.removesuffix(path) + other, f"{other} for {path}")
@@ -88,7 +90,7 @@ def other_element(code: Code) -> Iterator[Edit]:
             others += [f"len({whole}) // 4", f"len({whole}) // 2", f"3 * len({whole}) // 4"]
             for other in others:
                 yield code.replaced(subscript, f"{whole}[{other}]", f"index {other.replace(whole, '')}")
-            for form in _SOME:
+            for form in _OF_ALL:
                 yield code.replaced(subscript, form.format(whole), form)
 
 
