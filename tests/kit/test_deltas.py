@@ -9,7 +9,7 @@ import pytest
 from autograder.kit.evidence import Event, Part
 from autograder.kit.oracle.naming import mutant_words
 from autograder.kit.oracle.naming.deltas import Meaning, MutantClass, Mutants, alike, differences, meanings_of
-from autograder.kit.oracle.naming.effects import effect, whenever
+from autograder.kit.oracle.naming.effects import effect
 from autograder.kit.oracle.outputs import Kind, Output
 from tests.cases import cases
 
@@ -162,32 +162,3 @@ def test_everything_comes_twice_only_if_each_message_does(doubled: int, text: st
     seen = {step: rows * (2 if step < doubled else 1) for step, rows in due.items()}
     told = effect(SAID, seen, due)
     assert (told.text if told else "") == text
-
-
-@pytest.mark.parametrize(
-    ("wrong", "text"),
-    [
-        (
-            {1, 3},
-            "Your node is wrong on /said each time that status on /dock is “ABORTED”, and only then.",
-        ),
-        ({1}, ""),
-        ({1, 2, 3}, ""),
-        ({0, 1, 2, 3, 4}, ""),
-    ],
-)
-def test_another_output_tells_when_this_one_is_wrong(wrong: set[int], text: str) -> None:
-    dock = Output("/dock", ("status",), Kind.STEPS, 1e-3)
-
-    def run(wrong: set[int]) -> Part:
-        ends = ["SUCCEEDED", "ABORTED", "SUCCEEDED", "ABORTED", "SUCCEEDED"]
-        said = [[["stop"]] if step in wrong else [] for step in range(len(ends))]
-        columns = (("/dock", [[[end]] for end in ends]), ("/said", said))
-        noted = [
-            (name, {"step": step, "values": rows})
-            for name, steps in columns
-            for step, rows in enumerate(steps)
-        ]
-        return Part("drawing 0", {}, [Event(0.0, "noted", name, data) for name, data in noted])
-
-    assert whenever(SAID, run(wrong), run(set()), [dock, SAID]) == text

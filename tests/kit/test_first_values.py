@@ -112,7 +112,11 @@ def test_what_set_the_time_going_is_said(events: str, given: str, says: str) -> 
     words = events.split()
     kinds = {"sent": ("sent", "/go"), "said": ("message", "/said")}
     seen = [
-        Event(float(at), *kinds[word], {"fields": {"data": number}})
+        Event(
+            float(at),
+            *kinds.get(word, ("result_request", "/walk")),
+            {"fields": {"data": number}, "known": word == "known"},
+        )
         for number, (word, at) in enumerate(zip(words[::2], words[1::2], strict=True), 1)
     ]
     came = [["stop"]] * words.count("said")
@@ -146,3 +150,49 @@ def test_messages_of_a_look_in_real_time_belong_to_no_step() -> None:
     advice = located([output], run([["stop"]]), run([]), {"stop after 0.9 s": "said"})
     assert advice is not None
     assert advice.next_step == GO_THROUGH
+
+
+@pytest.mark.parametrize(
+    ("events", "due", "says"),
+    [
+        (
+            "sent 1.0 sent 1.5 wait 1.9 said 2.1 wait 2.3",
+            "1",
+            "too late, 0.6 s after /go with 2: it looks as if",
+        ),
+        ("sent 1.0 sent 1.5 wait 1.9 said 2.25 wait 2.3", "1", ""),
+        ("sent 1.0 sent 1.5 wait 1.9 said 2.1 wait 2.3", "1 2", ""),  # it is due there, too
+        ("sent 1.0 wait 1.7 sent 2.0 said 2.6 wait 2.7", "1 2", "0.6 s after /go with 1, nothing comes"),
+        ("sent 1.0 wait 1.5 sent 2.0 said 2.6 wait 2.7", "1 2", ""),  # the time is not over
+        ("sent 1.0 wait 1.7 sent 2.0 wait 2.7", "1 2", ""),  # it never comes
+    ],
+)
+def test_what_comes_too_late_or_not_at_all_by_the_time_is_said(events: str, due: str, says: str) -> None:
+    words = events.split()
+    seen: list[Event] = []
+    asked: list[Event] = []
+    came: list[list[str]] = []
+    number = step = 0
+    for word, at in zip(words[::2], map(float, words[1::2]), strict=True):
+        if word == "sent":
+            number += 1
+            seen.append(Event(at, "sent", "/go", {"fields": {"data": number}}))
+        elif word == "said":
+            came.append(["stop"])
+            seen.append(Event(at, "message", "/said", {"fields": {"data": "stop"}}))
+        else:
+            step += 1
+            for run, values in ((seen, came), (asked, [["stop"]] * (str(step) in due))):
+                data = {
+                    "step": step,
+                    "given": f"{at - seen[-1].moment:g} s without an input",
+                    "values": values,
+                }
+                run.append(Event(at, "noted", "/said", data))
+            came = []
+    output = Output("/said", ("data",), Kind.STEPS, 1e-3)
+    law = {"stop if nothing comes for 0.6 seconds": "said"}
+    advice = located([output], Part("a", {}, seen), Part("a", {}, asked), law)
+    assert advice is not None
+    assert says in advice.text
+    assert (advice.next_step == GO_THROUGH) is not bool(says)

@@ -146,3 +146,25 @@ def test_of_several_messages_in_a_step_only_what_differs_is_shown() -> None:
             advice.text
             == f"After /order, then 2 messages as asked, your code {came}; the task asks for “three”."
         )
+
+
+def test_the_only_sentence_that_quotes_what_is_too_much_is_shown() -> None:
+    law = {"say `far`": "said", "give up, and say `nothing`": "said"}
+    seen, due = (
+        Part("a", {}, [Event(0.0, "noted", "/said", {"step": 1, "given": "/go", "values": [[word]]})])
+        for word in ("nothing", "near")
+    )
+    advice = located([SAID], seen, due, law)
+    assert advice is not None
+    assert advice.text.endswith("The task says: “give up, and say `nothing`”.")
+
+
+def test_of_long_lists_only_the_items_that_differ_are_shown() -> None:
+    begins = "Find my glasses; " + "{'tool': 'walk_to'} -> ok; " * 2
+    seen, due = (
+        Part("a", {}, [Event(0.0, "noted", "/said", {"step": 1, "given": "/go", "values": [[begins + end]]})])
+        for end in ("lamp -> error", "lamp -> ok")
+    )
+    advice = located([SAID], seen, due, LAW)
+    assert advice is not None
+    assert "your code says on /said: … lamp -> error”; the task asks for … lamp -> ok”." in advice.text

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.oracle.outputs import Output
 
-EXCHANGED = "exchanged"
-"""The key of mutants with another field, of which the sentence about the whole output says more."""
+EXCHANGED, KEPT = "exchanged", "kept_for_ever"
+"""The keys of mutants of which the sentence about the whole output says more."""
 MUTANT, EFFECT = "mutant", "effect"
 """The entries of the ladder for what a mutant of the solution does, and for what is wrong with an output as a whole."""
 Recognized = Callable[["Evidence"], Advice | None]
@@ -190,8 +190,11 @@ class Drawn(OwnScenario):
             if mutant_words.are_of_several_kinds(found) and self._effects(run, due):
                 continue
             told = mutant_words.advice(found, mutants)
-            if told and told.key == EXCHANGED and self._effects(run, due):
+            whole = self._effects(run, due)
+            if told and told.key == EXCHANGED and whole:
                 continue
+            if told and whole and told.key == KEPT:  # which condition or value it is, the mutants only guess
+                told = replace(told, text=whole)
             # One level of a ladder may be all that tells another number. But a busy machine may lose one step, too.
             if told and (apart.tells or (mutant_words.is_one_limit(found) and not surely)):
                 where = first_apart(self._outputs, run, due)
@@ -221,8 +224,9 @@ class Drawn(OwnScenario):
                 return self._located(evidence)
         return None
 
-    def _effects(self, run: Part, due: Part) -> bool:
-        return any(effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
+    def _effects(self, run: Part, due: Part) -> str:
+        told = (effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
+        return next((one.text for one in told if one), "")
 
     def _located(self, evidence: Evidence) -> Advice | None:
         """Return the step at which the run leaves the solution's."""

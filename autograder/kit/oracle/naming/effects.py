@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from autograder.kit.oracle.naming.deltas import alike, rows, steps_apart
+from autograder.kit.oracle.naming.deltas import alike, steps_apart
 from autograder.kit.oracle.naming.step_words import quoted
 from autograder.kit.oracle.outputs import NUMBER, Kind
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
-    from autograder.kit.evidence import Part
     from autograder.kit.oracle.outputs import Output
 
 FEW = 6
@@ -99,30 +98,6 @@ def _only_once(name: str, pairs: Pairs, tolerance: float) -> str:
         is_left_out = is_left_out or any(one in said[:-1] for one in due)
         said += new
     return f"A message that your node has said{name} once, it never says again." if is_left_out else ""
-
-
-def whenever(output: Output, run: Part, due: Part, others: Sequence[Output]) -> str:
-    """Return the word of another output with which this one is wrong, each time and only then; empty if none is."""
-    theirs = rows(output, due)
-    apart = set(steps_apart(rows(output, run), theirs, output.tolerance))
-    if len(apart) < 2 or apart == set(theirs):
-        return ""
-    for other in others:
-        if other is output or other.kind is not Kind.STEPS:
-            continue
-        told = rows(other, due)
-        for column, path in enumerate(other.paths):
-            words = {
-                step: {one[column] for one in told.get(step, ()) if isinstance(one[column], str)}
-                for step in theirs
-            }
-            for word in sorted(set().union(*words.values())):
-                if {step for step in theirs if word in words[step]} == apart:
-                    return (
-                        f"Your node is wrong on {output.name} each time that {path} on {other.name} is "
-                        f"{_word(word)}, and only then."
-                    )
-    return ""
 
 
 def _values(what: str, pairs: Pairs, tolerance: float) -> str:

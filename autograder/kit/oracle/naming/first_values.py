@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.kit.in_words import counted
 from autograder.kit.model import card_words, filled_in
 from autograder.kit.oracle.naming.deltas import alike, rows, steps_apart
-from autograder.kit.oracle.naming.step_words import input_in_words, input_of, inputs_of, is_wait
+from autograder.kit.oracle.naming.step_words import WAITED, input_in_words, input_of, inputs_of, is_wait
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.rules import same, value
 
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 _WORDS = card_words(__file__)
 LONGEST_PIECE, ALIKE = 30, 4
 """The most letters that are missing in a text, or too many, for a card to say so; and how many have to follow alike."""
-AT_ONCE, LATE = 0.05, 0.11
-"""Seconds: between two messages of one callback, and by which a timer that looks ten times a second is late."""
+AT_ONCE, EARLY, LATE = 0.05, 0.06, 0.11
+"""Seconds: between two messages of one callback, and by which a timer that looks ten times a second may be apart."""
 LAST, MANY = 3, 3
 """The number of inputs that may have set a timer, and of messages from which on a number of them may be meant."""
 _WHOLE_MESSAGE = re2.compile(r"\.(?:msg|srv|action)\.\w+\(")
@@ -47,11 +48,16 @@ def hint(output: Output, run: Part, due: Part, seconds: Sequence[float] = ()) ->
     if not steps:
         return None
     came, asked = mine[steps[0]], theirs[steps[0]]
-    said, is_silent = _messages(output, run, steps[0], len(came))
+    between, is_silent = _events(output, run, steps[0])
+    said = _messages(output, between, len(came))
     if told := (
-        _too_often(came, asked, said)
+        _of_rejected(between)
+        or _too_often(came, asked, said)
         or (_set_going(said, is_silent, run, seconds) if said and len(came) > len(asked) else None)
         or _too_few(output, came, asked, mine)
+        or _too_late(output, run, came, asked, theirs, seconds)
+        or (_not_set_going(output, run, steps[0], mine, seconds) if asked and not came else None)
+        or _too_early(came, asked, mine, theirs)
         or (None if asked else _late(output, run, came))
     ):
         return told
@@ -96,18 +102,26 @@ def _pairs(output: Output, came: Sequence[Any], asked: Sequence[Any]) -> Iterato
             return
 
 
-def _messages(output: Output, run: Part, step: int, number: int) -> tuple[list[Event], bool]:
-    """Return the messages of an output that came in a step, and whether the judge only let time pass in it.
-
-    There are none if they are not as many as the step has. A look in real time notes all steps at its end, so that the
-    events do not show which message belongs to which step.
-    """
+def _events(output: Output, run: Part, step: int) -> tuple[Sequence[Event], bool]:
+    """Return the events of a step, and whether the judge only let time pass in it."""
     noted = run.of("noted", output.name)
     place = next(n for n, one in enumerate(noted) if one.data["step"] == step)
     start = run.events.index(noted[place - 1]) if place else 0
-    between = run.events[start : run.events.index(noted[place])]
+    return run.events[start : run.events.index(noted[place])], is_wait(noted[place])
+
+
+def _messages(output: Output, between: Sequence[Event], number: int) -> list[Event]:
+    """Return the messages of an output in a step. There are none if they are not as many as the step has.
+
+    A look in real time notes all steps at its end, so that the events do not show which message belongs to which step.
+    """
     messages = [event for event in between if event.kind == "message" and event.name == output.name]
-    return messages if len(messages) == number else [], is_wait(noted[place])
+    return messages if len(messages) == number else []
+
+
+def _of_rejected(between: Sequence[Event]) -> Advice | None:
+    is_asked = any(event.kind == "result_request" and not event.data.get("known", True) for event in between)
+    return filled_in(_WORDS["of_rejected"]) if is_asked else None
 
 
 def _too_often(came: Sequence[Any], asked: Sequence[Any], said: Sequence[Event]) -> Advice | None:
@@ -123,7 +137,7 @@ def _set_going(said: Sequence[Event], is_silent: bool, run: Part, seconds: Seque
     inputs = [event for event in inputs_of(run) if event.moment < said[-1].moment]
     for event, newer in reversed([*pairwise(inputs)][-LAST:]):
         passed = said[-1].moment - event.moment
-        if any(0 <= passed - one <= LATE for one in seconds):
+        if any(-EARLY <= passed - one <= LATE for one in seconds):
             return filled_in(
                 _WORDS["not_set_back"],
                 seconds=f"{passed:.2g}",
@@ -144,6 +158,67 @@ def _too_few(
     if not alike(came, asked[: len(came)], output.tolerance):
         return None
     return filled_in(_WORDS["too_few"], times=len(came), name=output.name, due=len(asked))
+
+
+def _too_late(
+    output: Output,
+    run: Part,
+    came: Sequence[Any],
+    asked: Sequence[Any],
+    theirs: Mapping[int, Any],
+    seconds: Sequence[float],
+) -> Advice | None:
+    """Return after which input a message comes that is due once and earlier, if the node's time runs since then."""
+    due = [one for values in theirs.values() for one in values]
+    missing = next((one for one in asked if one not in came and due.count(one) == 1), None)
+    said = next(
+        (event for event in run.of("message", output.name) if output.values([event]) == [missing]), None
+    )
+    if missing is None or said is None:
+        return None
+    inputs = [event for event in inputs_of(run) if event.moment < said.moment]
+    for event in inputs[:0:-1][:LAST]:
+        passed = said.moment - event.moment
+        if any(-EARLY <= passed - one <= LATE for one in seconds):
+            return filled_in(
+                _WORDS["set_back"], said=missing[0], seconds=f"{passed:.2g}", given=input_in_words(event)
+            )
+    return None
+
+
+def _not_set_going(
+    output: Output, run: Part, step: int, mine: Mapping[int, Any], seconds: Sequence[float]
+) -> Advice | None:
+    """Return after which input nothing comes when the time is over, if it comes after another one."""
+    noted = [event for event in run.of("noted", output.name) if is_wait(event)]
+    ends = next((event for event in noted if event.data["step"] == step), None)
+    if ends is None or not any(mine[event.data["step"]] for event in noted):
+        return None
+    inputs = [event for event in inputs_of(run) if event.moment < ends.moment]
+    begins = ends.moment - float(ends.data["given"].removesuffix(WAITED))
+    one = next((one for one in seconds if inputs and begins < inputs[-1].moment + one < ends.moment), None)
+    if one is None:
+        return None
+    return filled_in(_WORDS["not_set_going"], seconds=f"{one:g}", given=input_in_words(inputs[-1]))
+
+
+def _too_early(
+    came: Sequence[Any], asked: Sequence[Any], mine: Mapping[int, Any], theirs: Mapping[int, Any]
+) -> Advice | None:
+    """Return that a text comes where it is due, and elsewhere, too."""
+    extra = next((one for one in came if one not in asked), None)
+    if not asked or extra is None or len(extra) != 1 or not isinstance(extra[0], str):
+        return None
+    numbers = [
+        (list(mine[step]).count(extra), list(theirs[step]).count(extra)) for step in theirs if step in mine
+    ]
+    often, due = (sum(column) for column in zip(*numbers, strict=True))
+    is_all_there = all(one in came for one in asked) and all(there >= many for there, many in numbers)
+    if not (due and is_all_there):
+        return None
+    return filled_in(
+        _WORDS["too_early"], said=extra[0], times=counted(often, "time"), due=counted(due, "time")
+    )
 
 
 def _late(output: Output, run: Part, came: Sequence[Any]) -> Advice | None:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.model import Advice
-from autograder.kit.oracle.naming.deltas import rows
-from autograder.kit.oracle.naming.effects import effect, whenever
+from autograder.kit.oracle.naming.deltas import rows, steps_apart
+from autograder.kit.oracle.naming.effects import effect
 from autograder.kit.oracle.naming.first_values import hint
+from autograder.kit.oracle.naming.whenever import whenever
 from autograder.kit.oracle.outputs import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from autograder.kit.evidence import Part
     from autograder.kit.oracle.naming.deltas import Differences, Mutants
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 ALIKE = 0.5
 """The share of common steps from which on mutants at the place of a sentence are like the subject."""
+ITEM, LONG = "; ", 60
+"""What divides the items of a list in words, and the number of letters from which on a card leaves common ones out."""
 _SECONDS = re2.compile(r"\b(\d+(?:\.\d+)?) ?s(?:econds?)?\b")
 GO_THROUGH = "Go through your code with this input, step by step, and compare it with the task."
 
@@ -44,18 +47,18 @@ def located(
     for output in sorted(failed, key=lambda one: not wholes[one]):
         finding, whole = output.compared(run, due), wholes[output]
         judged = [sentence for sentence, names in law.items() if output.key in names.split()]
-        sentence = near if near in judged else judged[0] if len(judged) == 1 else ""
+        sentence = near if near in judged else _about(judged, _texts_apart(output, run, due))
         says = f"The task says: “{sentence.rstrip('.')}”." if sentence else ""
         not_met = f"“{output.title}” is not met: {finding.seen}. Asked: {finding.expected}."
         what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
-        values = hint(output, run, due, seconds) or Advice("", GO_THROUGH)
+        always = None if whole and whole.is_twice else whenever(output, run, due, outputs)
+        values = hint(output, run, due, seconds) or Advice("", always.next_step if always else GO_THROUGH)
         shows = "" if whole and whole.is_twice else values.text
-        all_steps = whole.text if whole else whenever(output, run, due, outputs)
         # The values show more than a sentence of the task does.
-        words = (all_steps, shows, what, says * (not shows))
-        return Advice(" ".join(filter(None, words)), values.next_step, uses=uses)
+        words = (whole.text if whole else "", always.text if always else "", shows, what, says * (not shows))
+        return Advice(" ".join(filter(None, words)), values.next_step, uses=always.uses if always else uses)
     return None
 
 
@@ -75,12 +78,39 @@ def _failed(outputs: Sequence[Output], run: Part, due: Part) -> list[Output]:
     return sorted((output for output in outputs if not output.compared(run, due).passed), key=step)
 
 
+def _about(judged: Sequence[str], texts: Collection[str]) -> str:
+    """Return the sentence that quotes one of the texts, or the only one; empty if several may be meant."""
+    quoting = [one for one in judged if any(f"`{text}`" in one for text in texts)] or judged
+    return quoting[0] if len(quoting) == 1 else ""
+
+
+def _texts_apart(output: Output, run: Part, due: Part) -> list[str]:
+    """Return the texts that are too much or missing in the first step that differs."""
+    mine, theirs = rows(output, run), rows(output, due)
+    step = next(iter(steps_apart(mine, theirs, output.tolerance)), None)
+    if step is None or output.kind is not Kind.STEPS:
+        return []
+    came, asked = (
+        [one[0] for one in values[step] if isinstance(one, list) and isinstance(one[0], str)]
+        for values in (mine, theirs)
+    )
+    return [one for one in came if one not in asked] or [one for one in asked if one not in came]
+
+
 def _where_apart(output: Output, run: Part, due: Part) -> str:
     parting = output.parting_words(run, due)
     if parting is None:
         return ""
     when, came, asked = parting
+    came, asked = _from(came, asked), _from(asked, came)
     return f"{_capital(when)}, your code {output.deed(came)}; the task asks for {asked}."
+
+
+def _from(words: str, others: str) -> str:
+    """Return words without the items of a list, if these are many letters, with which others begin in the same way."""
+    letters = enumerate(zip(words, others, strict=False))
+    alike = words[: next((number for number, (one, other) in letters if one != other), 0)]
+    return f"… {words[alike.rfind(ITEM) + len(ITEM) :]}" if ITEM in alike[LONG:] else words
 
 
 def _capital(text: str) -> str:

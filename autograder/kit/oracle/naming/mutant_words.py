@@ -48,6 +48,7 @@ NEXT = {
     "condition_ignored": "Compare each condition of your code with the task, with the values that the card shows.",
     "other_way_round": "Look at the comparison there, and at what each of the two branches does.",
     "kept_for_ever": "Look at each attribute: when is it set, and when is it set back?",
+    "step_missing": "Go through the sentences of the task one by one: which has no line in your code, or a late one?",
     "forgets": "Store it in self, in `__init__` for the first time, and change it only when it changes.",
 }
 """The next step for the student, by the key of the diagnosis."""
