@@ -33,7 +33,7 @@ def _given(exercise: str) -> frozenset[Place]:
     text = found.source
     for cell in found.own:
         text = text.replace(cell, "")
-    return frozenset(_places(text))
+    return frozenset(place for place in _places(text) if place[1])
 
 
 def _places(text: str) -> list[Place]:

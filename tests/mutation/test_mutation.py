@@ -19,6 +19,7 @@ from autograder.authoring.mutants.operators import PYTHON
 from autograder.verdict import State
 from tests.cases import cases
 from tests.mutation import equivalents
+from tests.mutation.given_code import given_lines
 from tests.mutation.line_operators import LINES
 from tests.mutation.mutants import Mutant, mutants, sampled
 from tests.mutation.report import Report, report
@@ -83,6 +84,26 @@ def test_an_unrelated_edit_leaves_the_ids_as_they_are() -> None:
         SUBJECT, text=TALKER.replace('"""Right."""', '"""Right, and said better."""\n# A comment.\n')
     )
     assert [mutant.id for mutant in mutants(other)] == [mutant.id for mutant in mutants(SUBJECT)]
+
+
+def test_what_a_notebook_has_before_a_task_is_not_changed() -> None:
+    text = """
+class Hands(Node):
+    def __init__(self) -> None:
+        self.declare_parameter("max_turn", 1.0, within(0.0, 2.0))
+        self.watchdog = self.create_timer(0.5, self.on_silence)
+
+class OtherHands(Node):
+    def __init__(self) -> None:
+        self.declare_parameter("max_turn", 1.0, within(0.0, 2.0))
+"""
+    given = given_lines("lab_2_2.watchdog", text)
+    named = [
+        number for number, line in enumerate(text.splitlines(), 1) if "self." in line and number in given
+    ]
+    assert named == [4]
+    # A task that comes first has nothing before it, and one about files no class.
+    assert not given_lines("lab_1_1.hello", text)
 
 
 def test_every_operator_makes_something() -> None:

@@ -128,7 +128,7 @@ EXERCISE = Mission(
             "no_call",
             lambda now: not now.part.of("request") and not now.part.traceback,
             "Your node never called the service lamp, although the robot came near the door.",
-            "Only x counts: compare it with the door's place, and call self.lamp.call_async(SetBool.Request(data=...)).",
+            "Only x counts: compare it with the door, and call self.lamp.call_async(SetBool.Request(data=...)).",
         ),
         (
             "too_many_calls",
