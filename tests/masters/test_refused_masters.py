@@ -17,55 +17,13 @@ from autograder import exercises
 from autograder.masters.check_cells import CheckCall, exercise_points
 from autograder.masters.master_files import FAULTS, MasterError, masters
 from autograder.masters.source_notebooks import Points, source_notebook
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 HERE = Path(__file__).parent
-# File: line, words of the problem, words of the remedy.
-REFUSED = {
-    "duplicate_grade_id": (19, "'double' is already used by the cell on line 9", "grade_id"),
-    "an_exercise_checked_twice": (24, "'lab_9_1-double' is already used", "one cell only"),
-    "no_markers": (12, "without '### BEGIN SOLUTION'", "Put what students"),
-    "never_ended": (12, "without '### END SOLUTION'", "Put what students"),
-    "misspelt_marker": (13, "marker is misspelt", "'### BEGIN SOLUTION' and nothing else"),
-    "markers_swapped": (13, "stands before", "Swap"),
-    "no_stub": (14, "does not begin with a TODO comment", "# TODO: "),
-    "two_todos": (13, "second TODO", "split it"),
-    "two_regions": (17, "A second '### BEGIN SOLUTION'", "split it"),
-    "nothing_in_the_region": (14, "holds no solution", "Write it"),
-    "the_stub_does_not_run": (9, "Without its solution the cell is not valid Python", "docstring"),
-    "the_solution_is_no_python": (16, "The solution is not valid Python", "Correct this line"),
-    "region_in_a_given_cell": (9, "in a cell that is not a solution cell", ":tags: [solution]"),
-    "solution_without_a_name": (9, "but this one defines", ":grade_id:"),
-    "grade_id_with_a_space": (9, "'no good' cannot be a grade_id", "letters"),
-    "check_with_another_grade_id": (19, "'other' does not match", "gets 'lab_9_1-double' automatically"),
-    "check_of_another_notebook": (19, "does not belong to this notebook", "begin with 'lab_9_1.'"),
-    "check_of_what_is_not_written": (
-        19,
-        "judges 'triple', which no solution cell above it defines",
-        "double",
-    ),
-    "check_of_a_path_that_nobody_writes": (19, "judges 'ros2_ws' on the disk", "%%writefile <path>"),
-    "check_of_a_name_in_a_file": (20, "judges 'double', which no solution cell", "nothing so far"),
-    "the_file_is_no_python": (17, "The solution is not valid Python", "Correct this line"),
-    "check_with_more_in_it": (19, "cannot be read", 'check("lab_9_1.battery", BatteryNode)'),
-    "unknown_tag": (9, "Unknown tag 'solutoin'", "solution"),
-    "two_tags": (9, "2 tags", "keep one"),
-    "unknown_option": (9, "Unknown cell option 'points'", "grade_id, tags"),
-    "manual_without_points": (11, "a question that a person grades", '"points": 5'),
-    "manual_without_an_answer": (11, "without '### BEGIN SOLUTION'", "Put what students"),
-    "manual_without_a_question": (12, "The question is missing", "Ask it above"),
-    "manual_code": (9, "A person grades text, not code", '"manual"'),
-    "empty_cell": (9, "empty code cell", "delete it"),
-    "open_hint": (11, "hint that is not closed", "':::'"),
-    "hint_without_a_question": (11, "without its question", ":::{hint} What"),
-    "options_no_yaml": (None, "Code cell 0 at line 9 could not be read", "YAML options"),
-    "header_no_yaml": (None, "Notebook metadata", "YAML options"),
-    "header_without_a_kernel_name": (1, "Jupyter refuses the header", "name: python3"),
-    "header_that_is_a_list": (1, "Jupyter refuses the header", "name: python3"),
-    "raw_cell": (9, "raw cell", "Markdown or code"),
-}
+REFUSED = cases(__file__, "REFUSED")
 
 
 @pytest.fixture
@@ -88,7 +46,7 @@ def test_a_bad_master_is_refused(name: str, as_lab_9_1: Callable[[Path], Path], 
         source_notebook(path, points=ten_points)
     assert problem in caught.value.problem
     assert remedy in caught.value.remedy
-    assert caught.value.line == line
+    assert caught.value.line == (line or None)
     assert str(caught.value).startswith(f"{path}:{line}: " if line else f"{path}: ")
 
 
