@@ -14,42 +14,17 @@ from typing import TYPE_CHECKING, Self
 import psutil
 
 from autograder.safe_files import remove_tree
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_SCHEDULER = """
-import asyncio
-import sys
-from distributed import Scheduler
+_SCHEDULER = cases(__file__, "_SCHEDULER")
 
-async def main():
-    async with Scheduler(protocol=sys.argv[1], host="127.0.0.1", port=0, dashboard=False) as scheduler:
-        print(scheduler.address, flush=True)
-        await scheduler.finished()
-
-asyncio.run(main())
-"""
-
-_WORKER = """
-import sys
-from autograder.grading.cluster import dask_worker
-
-address, name, slots, version, obstacle = sys.argv[1:6]
-# Agreed upon, also while somebody edits the course.
-dask_worker.course_version = lambda: version
-dask_worker.why_impossible = lambda: obstacle
-exec(sys.argv[6])
-dask_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
-"""
+_WORKER = cases(__file__, "_WORKER")
 
 # What `dask worker` executes first, so that it has the same to offer.
-_PRELOAD = """
-from autograder.grading.cluster import dask_worker
-
-dask_worker.course_version = lambda: {version!r}
-dask_worker.why_impossible = lambda: {obstacle!r}
-"""
+_PRELOAD = cases(__file__, "_PRELOAD")
 
 VERSION = "test"
 UNBOXED = "this test has no boxes"

@@ -30,25 +30,14 @@ from pathlib import Path
 import psutil
 
 sys.path.insert(0, str(Path(__file__).parent))
-from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class
+from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class, read_scores
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.process_trees import adopt_orphans
+from tests.cases import cases
 
-BATCH = """
-import sys
-from pathlib import Path
-from rich.console import Console
-from autograder.grading.batch import grade
-report = grade(
-    Path(sys.argv[1]), jobs=int(sys.argv[2]), judge="fake_judge:FakeJudge", console=Console(stderr=True, width=200)
-)
-print(f"executed {report.executed}")
-for problem in report.problems:
-    print(problem, file=sys.stderr)
-sys.exit(report.exit_code)
-"""
+BATCH = cases(__file__, "BATCH")
 STUDENTS = ("ada", "ben", "cleo", "dora", "emil", "fred", "gwen", "hans")
 PATIENCE = 180.0
 """Seconds after which a process that is still there counts as left."""
@@ -119,17 +108,7 @@ class Trial:
             with contextlib.closing(sqlite3.connect(self.tiny.path / name)) as book:
                 (sound,) = book.execute("PRAGMA integrity_check").fetchone()
                 demand(sound == "ok", f"{name} is damaged: {sound}")
-        with contextlib.closing(sqlite3.connect(self.tiny.path / "gradebook.db")) as book:
-            rows = book.execute(
-                "SELECT submitted_assignment.student_id, base_cell.name, grade.auto_score FROM grade"
-                " JOIN base_cell ON base_cell.id = grade.cell_id"
-                " JOIN submitted_notebook ON submitted_notebook.id = grade.notebook_id"
-                " JOIN submitted_assignment ON submitted_assignment.id = submitted_notebook.assignment_id"
-            ).fetchall()
-        found: State = {}
-        for student, cell, score in rows:
-            found.setdefault(student, {})[cell] = score
-        return found
+        return read_scores(self.tiny.path)
 
     def kill_after(self, seconds: float, with_: signal.Signals) -> str:
         """Start a batch, end it, look at what is left, and have the next one finish; a line about it."""

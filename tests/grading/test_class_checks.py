@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
-    check_configuration(ClassDirectory(tiny.path))
-
-
 def test_who_reads_it_waits_for_no_import_of_nbgrader(tiny: TinyClass) -> None:
     asked = (
         "import pathlib, sys; from autograder.grading.classes.class_directory import ClassDirectory; "

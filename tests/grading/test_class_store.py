@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import TALKER, FakeEngine, TinyClass, make_version_5
+from tiny_class import TALKER, FakeEngine, TinyClass, make_version_5, mounted
 
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
@@ -24,7 +24,7 @@ from autograder.grading import class_store, store_tables
 from autograder.grading.class_records import Attempt, Origin, ResultKey
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.grading_errors import DiskFull, StoreTrouble
+from autograder.grading.grading_errors import StoreTrouble
 from autograder.grading.grading_task import Task
 from autograder.grading.table.rows import Row
 from autograder.verdict import State, Verdict
@@ -472,37 +472,6 @@ def test_a_store_that_another_program_holds(store: ClassStore, monkeypatch: pyte
 
 
 # -- the disk
-
-
-@contextlib.contextmanager
-def mounted(folder: Path, *options: str) -> Iterator[None]:
-    if subprocess.run(["mount", *options, str(folder)], capture_output=True, check=False).returncode:
-        pytest.skip("only root can mount")
-    try:
-        yield
-    finally:
-        subprocess.run(["umount", "--lazy", str(folder)], check=True)
-
-
-def test_a_full_disk_is_said_and_loses_nothing(store: ClassStore) -> None:
-    large = replace(DONE, evidence={"lab.one": os.urandom(20_000)})
-    tasks = [replace(TASK, notebook=f"{number}") for number in range(50)]
-    with mounted(file_of(store).parent, "-t", "tmpfs", "-o", "size=400k", "tmpfs"):
-        filler = file_of(store).with_name("filler")
-        filler.write_bytes(bytes(100_000))
-        store.enter(submission(), entered())
-        with pytest.raises(DiskFull, match="Free some space"):
-            [store.keep(task, large) for task in tasks]
-        kept = len(store.results("ada", "lab"))
-        with pytest.raises(DiskFull):
-            store.keep(tasks[kept], large)
-        assert store.results("ada", "lab").keys() == {task.key() for task in tasks[:kept]}
-        assert (store.entered(), attempts_of(store)) == ({("ada", "lab"): entered()}, attempts(0))
-        filler.unlink()
-        store.keep(tasks[kept], large)
-        assert kept
-        assert len(store.results("ada", "lab")) == kept + 1
-        store.close()
 
 
 def test_a_class_that_may_only_be_read_is_read(

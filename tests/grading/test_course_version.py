@@ -61,14 +61,15 @@ def test_every_file_that_is_kept_counts(copy: Path) -> None:
 
 
 def test_a_changed_byte_in_any_of_them_moves_it(copy: Path) -> None:
-    seen = {version()}
-    for name in kept():
+    """Of each twenty-fifth: that all are counted is asked above."""
+    seen, some = {version()}, kept()[::25]
+    for name in some:
         file = copy / name
         before = file.read_bytes()
         file.write_bytes(before[:-1] + bytes([(before[-1] + 1) % 256]) if before else b" ")
         seen.add(version())
         file.write_bytes(before)
-    assert len(seen) == len(kept()) + 1
+    assert len(seen) == len(some) + 1
     assert version() in seen
 
 
@@ -115,22 +116,9 @@ LABS = ("lab_1_2", "lab_1_4", "lab_1_4_robot", "lab_2_3", "bugs_1", "bugs_2")
 
 @pytest.mark.parametrize(
     ("name", "moved"),
-    [
-        ("autograder/judge/check_server.py", {"judge"}),
-        ("autograder/grading/running/worker_messages.py", {"judge"}),
-        ("environment/setup_steps.py", {"judge"}),
-        ("autograder/cards/card_wording.py", {"grader"}),
-        ("autograder/grading/result_writer.py", {"grader"}),
-        ("solutions/01_ros2_fundamentals/lab_1_4/server.py", {"lab_1_4", "lab_1_4_robot", "bugs_2"}),
-        ("solutions/01_ros2_fundamentals/lab_1_2/talker.reference.json", {"lab_1_2", "bugs_1"}),
-        ("solutions/02_bridging_python_agents/lab_2_3/_questions.py", {"lab_2_3"}),
-        (
-            "solutions/ros2_ws/src/my_robot_pkg/package.xml",
-            {"lab_1_2", "lab_1_4", "lab_1_4_robot", "lab_2_3", "bugs_1", "bugs_2"},
-        ),
-    ],
+    cases(__file__, "a_file_moves_the_parts_that_depend_on_it"),
 )
-def test_a_file_moves_the_parts_that_depend_on_it(name: str, moved: set[str]) -> None:
+def test_a_file_moves_the_parts_that_depend_on_it(name: str, moved: tuple[str, ...]) -> None:
     contents = files()
 
     def parts() -> dict[str, str]:
@@ -141,7 +129,7 @@ def test_a_file_moves_the_parts_that_depend_on_it(name: str, moved: set[str]) ->
     before = parts()
     contents[name] += b" "
     after = parts()
-    assert {part for part, value in after.items() if value != before[part]} == moved
+    assert {part for part, value in after.items() if value != before[part]} == set(moved)
 
 
 MAY_ENTER_A_RESULT = {

@@ -29,25 +29,23 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.usefixtures("fake_engine")
 
 
-def nbgrader_autograde(tiny: TinyClass, **options: Any) -> None:
-    """What ``nbgrader autograde lab_1_2`` and formgrader's button do."""
+def converted(tiny: TinyClass, kind: Any, *, force: bool = False, **chosen: str) -> None:
+    """What a command of nbgrader's and a button of formgrader's do with a lab, or with what is chosen of it."""
     config = ClassDirectory(tiny.path).config
     course = CourseDirectory(config=config)
-    course.assignment_id = "lab_1_2"
-    converter = Autograde(coursedir=course, config=config)
-    for name, value in options.items():
-        setattr(converter, name, value)
+    for name, value in {"assignment_id": "lab_1_2", **chosen}.items():
+        setattr(course, name, value)
+    converter = kind(coursedir=course, config=config)
+    converter.force = force
     converter.start()
+
+
+def nbgrader_autograde(tiny: TinyClass, *, force: bool = False, **chosen: str) -> None:
+    converted(tiny, Autograde, force=force, **chosen)
 
 
 def nbgrader_generate_feedback(tiny: TinyClass) -> None:
-    """What ``nbgrader generate_feedback lab_1_2`` and formgrader's button do."""
-    config = ClassDirectory(tiny.path).config
-    course = CourseDirectory(config=config)
-    course.assignment_id = "lab_1_2"
-    converter = GenerateFeedback(coursedir=course, config=config)
-    converter.force = True
-    converter.start()
+    converted(tiny, GenerateFeedback, force=True)
 
 
 def hand_in_all_kinds(tiny: TinyClass) -> list[str]:
@@ -163,11 +161,8 @@ def test_a_result_that_cannot_be_kept_is_no_result(tiny: TinyClass, monkeypatch:
 
 def test_a_single_notebook_of_a_submission_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.submit("ada")
-    config = ClassDirectory(tiny.path).config
-    course = CourseDirectory(config=config)
-    course.assignment_id, course.notebook_id = "lab_1_2", "lab_1_2"
     with pytest.raises(NbGraderException, match="leave out --notebook"):
-        Autograde(coursedir=course, config=config).start()
+        nbgrader_autograde(tiny, notebook_id="lab_1_2")
     assert fake_engine.ran == []
 
 
@@ -176,14 +171,9 @@ def test_one_student_of_plain_nbgrader_is_graded_alone(tiny: TinyClass, fake_eng
     tiny.submit("ada", 3)
     tiny.submit("ben", 5)
     (tiny.path / "submitted" / "eve").symlink_to(tiny.path / "submitted" / "ada")
-    config = ClassDirectory(tiny.path).config
-    course = CourseDirectory(config=config)
-    course.assignment_id, course.student_id = "lab_1_2", "ben"
-    Autograde(coursedir=course, config=config).start()
-    assert fake_engine.ran == ["ben"]
-    course.student_id = "eve"
+    nbgrader_autograde(tiny, student_id="ben")
     with pytest.raises(NbGraderException, match=r"eve.*: the path is a link; replace the link by the folder"):
-        Autograde(coursedir=course, config=config).start()
+        nbgrader_autograde(tiny, student_id="eve")
     assert fake_engine.ran == ["ben"]
 
 

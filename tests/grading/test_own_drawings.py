@@ -20,6 +20,7 @@ from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.judge import evidence_files
 from autograder.kit.oracle.same_as_solution import To
 from autograder.masters.reference_solutions import reference_source
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,68 +28,10 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 NODE, FUNCTION = "lab_2_0.bridge", "project_2.agent"
-MASTER = """\
----
-jupytext:
-  formats: md:myst
-kernelspec:
-  display_name: Python 3 (ipykernel)
-  name: python3
----
-
-# One answer
-
-```{{code-cell}} ipython3
-from autograder.notebook import check, start_ros
-
-start_ros()
-```
-
-```{{code-cell}} ipython3
-:tags: [solution]
-class {subject}:
-    \"\"\"The answer.\"\"\"
-
-    ### BEGIN SOLUTION
-    # TODO: write it.
-    written = True
-    ### END SOLUTION
-```
-
-```{{code-cell}} ipython3
-:tags: [check]
-check("{exercise}", {subject})
-```
-"""
+MASTER = cases(__file__, "MASTER")
 SUBJECTS = {NODE: "Bridge", FUNCTION: "decisions"}
-NODE_BY_HEART = """
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from sensor_msgs.msg import LaserScan
-
-
-class Bridge(Node):
-    def __init__(self):
-        super().__init__("bridge")
-        self.publisher = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_subscription(LaserScan, "scan", self.sense, 10)
-        self.create_timer(0.2, self.act)
-        self.row, self.heard = None, -1
-
-    def sense(self, scan):
-        self.row = self.row or min(TABLE, key=lambda row: abs(row[0] - scan.ranges[0]))[1]
-        self.heard = min(self.heard + 1, len(self.row) - 1)
-
-    def act(self):
-        if self.row:
-            twist = Twist()
-            twist.linear.x, twist.angular.z = self.row[self.heard]
-            self.publisher.publish(twist)
-"""
-FUNCTION_BY_HEART = """
-def decisions(observations):
-    return min(TABLE, key=lambda row: abs(row[0] - observations[0][0]))[1]
-"""
+NODE_BY_HEART = cases(__file__, "NODE_BY_HEART")
+FUNCTION_BY_HEART = cases(__file__, "FUNCTION_BY_HEART")
 
 
 def by_heart(exercise_id: str, code: str) -> str:

@@ -18,6 +18,7 @@ from autograder import standard_output
 from autograder.__main__ import main
 from autograder.cli import GROUPS
 from autograder.grading.cluster import dask_worker
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -124,17 +125,7 @@ def test_names_in_a_download_are_escaped(
 
 def test_whatever_prints_goes_through_the_same_exit(tmp_path: Path) -> None:
     program = tmp_path / "prints.py"
-    program.write_text(f"""
-import logging, sys, warnings
-from autograder import standard_output
-from autograder.__main__ import main
-standard_output.guard_terminal()
-name = {NAME!r}
-print(name); print(name, file=sys.stderr); warnings.warn(name); logging.error(name)
-console = standard_output.console()
-console.print(name, markup=False)
-raise ValueError(name)
-""")
+    program.write_text(f"NAME = {NAME!r}\n{cases(__file__, 'PRINTS')}")
     done = subprocess.run([sys.executable, str(program)], capture_output=True, check=False)
     shown = (done.stdout + done.stderr).decode("utf-8", "surrogateescape")
     assert shown.count("\\x1b]0;pwn") >= 6

@@ -27,6 +27,7 @@ from autograder.grading.returning.sanitize import make_harmless
 from autograder.grading.tasks import graded_notebooks
 from autograder.grading.tasks.submission_times import handed_in_at
 from autograder.verdict import State, Verdict
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
@@ -48,16 +49,7 @@ def everything(path: Path) -> dict[str, Any]:
     """What the gradebook holds, without the ids that are drawn anew in each."""
     book = sqlite3.connect(path / "gradebook.db")
     found = {}
-    for table, columns in {
-        "submitted_assignment s": "s.student_id, (SELECT name FROM assignment WHERE id = s.assignment_id),"
-        " s.timestamp, s.extension",
-        "submitted_notebook sn": "(SELECT name FROM notebook WHERE id = sn.notebook_id), sn.flagged,"
-        " sn.late_submission_penalty, (SELECT student_id FROM submitted_assignment WHERE id = sn.assignment_id)",
-        "grade g": "(SELECT name || type FROM base_cell WHERE id = g.cell_id), g.auto_score, g.manual_score,"
-        " g.extra_credit, g.needs_manual_grade",
-        "comment c": "(SELECT name || type FROM base_cell WHERE id = c.cell_id), c.auto_comment, c.manual_comment",
-        "student": "id, first_name, last_name",
-    }.items():
+    for table, columns in cases(__file__, "COLUMNS").items():
         found[table] = sorted(map(repr, book.execute(f"SELECT {columns} FROM {table}")))
     return found
 

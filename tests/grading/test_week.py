@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 import shutil
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
 from downloads import write_zip
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading import week as weekly
@@ -20,9 +19,6 @@ from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends
 from autograder.grading.week import show_week, week
 from tests.cases import cases
-
-if TYPE_CHECKING:
-    from tiny_class import FakeEngine, TinyClass
 
 WEEKS = cases(__file__, "week")
 
@@ -46,8 +42,7 @@ def downloaded(klass: TinyClass, place: Path, case: dict[str, Any]) -> list[Path
 def cells(klass: TinyClass, case: dict[str, Any]) -> dict[str, str]:
     """What is in the filled list, by the cell that names the student."""
     who, points = case["columns"]
-    text = (klass.path / "export" / case["into"]).read_text("utf-8-sig")
-    return {row[who]: row[points] for row in csv.DictReader(io.StringIO(text)) if row[who]}
+    return {row[who]: row[points] for row in klass.table(f"export/{case['into']}") if row[who]}
 
 
 @pytest.mark.parametrize("system", WEEKS)
@@ -105,15 +100,34 @@ def test_a_changed_list_of_students_and_two_lists_are_questions(folder: TinyClas
 ODD = cases(__file__, "odd")
 
 
+@pytest.fixture(scope="module")
+def _after_canvas(to_be_copied: TinyClass, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("downloads")
+    files = downloaded(to_be_copied, place, WEEKS["canvas"])
+    with FakeEngine().at_work(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(execution_backends, "require_sandbox", lambda _: None)
+        patch.chdir(to_be_copied.path)
+        week(to_be_copied.path, files)
+    return place
+
+
+@pytest.fixture
+def after_canvas(
+    _after_canvas: Path, to_be_copied: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> TinyClass:
+    """A class after a week with Canvas, whose downloads lie beside it."""
+    shutil.copytree(_after_canvas, tmp_path, dirs_exist_ok=True)
+    return TinyClass(Path(shutil.copytree(to_be_copied.path, tmp_path / "class")))
+
+
 @pytest.mark.parametrize("name", ODD)
 def test_what_a_new_instructor_may_type(
-    folder: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+    after_canvas: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     """The commands of a case are typed in the class folder, after a week with Canvas; the last one counts."""
     monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
-    case, files = ODD[name], downloaded(folder, tmp_path, WEEKS["canvas"])
+    case, folder = ODD[name], after_canvas
     monkeypatch.chdir(folder.path)
-    week(folder.path, files)
     for name_of_file, text in case.get("files", {}).items():
         (tmp_path / name_of_file).write_text(text, encoding="utf-8")
     (folder.path / "class.toml").write_text(case.get("class", ""))

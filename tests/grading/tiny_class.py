@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import io
 import sqlite3
+import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,13 +52,7 @@ from autograder.grading import course_version
 
 course_version.course_files = lambda: course_version.CourseFiles({COURSE!r}.items())
 """
-GRADE = f"""{STANDS_STILL}
-import sys
-from pathlib import Path
-from rich.console import Console
-from autograder.grading.batch import grade
-grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Console(stderr=True, width=200))
-"""
+GRADE = f"{STANDS_STILL}\n{cases(__file__, 'GRADE')}"
 """A batch in a process of its own: the class, and what makes a judge."""
 QUIET = Console(quiet=True)
 
@@ -96,11 +92,25 @@ class TinyClass:
     def grade(self, **options: Any) -> GradeReport:
         return grade(self.path, **{"console": QUIET, "feedback": False, **options})
 
+    def table(self, name: str = "grades.csv") -> list[dict[str, str]]:
+        """The lines of a table of the class, as any program for CSV reads them."""
+        with (self.path / name).open(encoding="utf-8-sig", newline="") as lines:
+            return list(csv.DictReader(lines))
+
     def scores(self, student: str) -> dict[str, float | None]:
         """What the gradebook says."""
         with Gradebook(f"sqlite:///{self.path / 'gradebook.db'}") as book:
             notebook = book.find_submission_notebook("lab_1_2", "lab_1_2", student)
             return {grade.name: grade.auto_score for grade in notebook.grades}
+
+
+def read_scores(path: Path) -> dict[str, dict[str, float | None]]:
+    """What the gradebook of a class says, read as a file by somebody who knows nothing of nbgrader."""
+    found: dict[str, dict[str, float | None]] = {}
+    with contextlib.closing(sqlite3.connect(path / "gradebook.db")) as book:
+        for student, cell, score in book.execute(cases(__file__, "SCORES")):
+            found.setdefault(student, {})[cell] = score
+    return found
 
 
 def write_master(course: Path, lab: str, text: str) -> None:
@@ -134,6 +144,17 @@ def make_tiny_class(folder: Path) -> Path:
     write_master(folder / "course", "lab_1_2", MASTER)
     new_class(folder / "tiny-class", folder / "course", timezone="UTC")
     return folder / "tiny-class"
+
+
+@contextlib.contextmanager
+def mounted(folder: Path, *options: str) -> Iterator[None]:
+    """Mount something on a folder, as long as a test needs it."""
+    if subprocess.run(["mount", *options, str(folder)], capture_output=True, check=False).returncode:
+        pytest.skip("only root can mount")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
 class FakeEngine:

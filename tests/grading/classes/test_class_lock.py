@@ -18,35 +18,18 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import ClassBusy
 from autograder.grading.running import execution_backends
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 WHO = rf"process {os.getpid()}, since \d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d"
 
-HOLD = """
-import os, sys
-from pathlib import Path
-from autograder.grading.classes.class_directory import ClassDirectory
-with ClassDirectory(Path(sys.argv[1])).lock():
-    if os.fork() == 0:
-        print(os.getpid(), flush=True)
-        os.read(0, 1)
-        os._exit(0)
-    os.wait()
-"""
+HOLD = cases(__file__, "HOLD")
 
 PATIENCE = 120.0
 """Seconds after which two batches that both stand still have failed."""
-HELD = """
-import sys
-from pathlib import Path
-from tiny_class import FakeEngine, TinyClass
-engine = FakeEngine()
-engine.before = lambda _: sys.stdin.read()
-with engine.at_work():
-    TinyClass(Path(sys.argv[1])).grade()
-"""
+HELD = cases(__file__, "HELD")
 """A batch in a process of its own that stands still until its input is closed."""
 
 

@@ -122,26 +122,13 @@ def test_a_worker_that_is_killed_costs_only_its_tasks_again_and_the_gradebook_is
 PICKLER = cases(__file__, "PICKLER")
 
 # Every client of Dask reads what workers warn of. This one is what the grader would be without its client.
-STOCK_CLIENT = """
-import sys
-from distributed import Client
-from autograder.grading.cluster import dask_calls as calls
-
-with Client(sys.argv[1]) as client:
-    client.submit(calls.execute_order, b"", workers=[sys.argv[2]], key="probe").result()
-    client.sync(client.scheduler.identity)
-"""
+STOCK_CLIENT = cases(__file__, "STOCK_CLIENT")
 
 TOO_LARGE = (
     "from autograder.grading.cluster import dask_calls as c; c.execute_order = lambda _: bytes(40_000_000)"
 )
 NO_BYTES = "from autograder.grading.cluster import dask_calls as c; c.execute_order = lambda _: {'score': 10}"
-FORGES = """
-import re
-from autograder.grading.cluster import dask_calls as calls
-honest = calls.execute_order
-calls.execute_order = lambda order: re.sub(rb'"score":[0-9.]+', b'"score":1000', honest(order))
-"""
+FORGES = cases(__file__, "FORGES")
 
 
 def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
@@ -224,18 +211,7 @@ def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     assert tiny.scores("ada")[TALKER] == 4
 
 
-GRADE = f"""{STANDS_STILL}
-import sys
-from pathlib import Path
-from rich.console import Console
-from autograder.grading.classes.class_directory import switch_sandbox_off
-from autograder.grading.batch import grade
-from autograder.grading.cluster import cluster_dispatcher as dispatcher
-dispatcher.course_version = lambda: "test"
-switch_sandbox_off(Path(sys.argv[1]))
-grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],
-      console=Console(stderr=True, width=200))
-"""
+GRADE = f"{STANDS_STILL}\n{cases(__file__, 'GRADE')}"
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])

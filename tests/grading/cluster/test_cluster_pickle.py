@@ -73,14 +73,7 @@ def test_nothing_in_the_client_process_has_kept_the_real_one() -> None:
     assert done.stdout == ""
 
 
-INSTALLED = """
-import io, pickle
-from autograder.grading.cluster import inert_pickle
-inert_pickle.install()
-data = b"cos\\nsystem\\n(S'echo ran'\\ntR."
-for made in pickle.loads(data), pickle.load(io.BytesIO(data)), pickle.Unpickler(io.BytesIO(data)).load():
-    print(type(made).__mro__[1].__name__)
-"""
+INSTALLED = cases(__file__, "INSTALLED")
 
 
 def test_installing_replaces_every_way_to_read_a_pickle() -> None:

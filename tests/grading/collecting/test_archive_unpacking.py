@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import io
 import os
-import tarfile
 import zipfile
 from collections import Counter
 
 import pytest
+from downloads import tarred
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -32,16 +32,6 @@ def zipped(files: list[tuple[str, bytes]]) -> bytes:
             info = zipfile.ZipInfo()
             info.filename = name  # as it is: what the constructor takes out, another program writes
             made.writestr(info, content)
-    return data.getvalue()
-
-
-def tarred(files: list[tuple[str, bytes]]) -> bytes:
-    data = io.BytesIO()
-    with tarfile.open(fileobj=data, mode="w", format=tarfile.PAX_FORMAT) as made:
-        for name, content in files:
-            entry = tarfile.TarInfo(name)
-            entry.size = len(content)
-            made.addfile(entry, io.BytesIO(content))
     return data.getvalue()
 
 

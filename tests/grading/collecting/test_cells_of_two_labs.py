@@ -14,6 +14,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.new_classes.new_class import release
 from autograder.grading.table.rows import remarks_on
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,14 +22,7 @@ if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
 
-NAMES = {
-    "Talker": "Server",
-    "Listener": "Client",
-    "lab_1_2-talker": "lab_1_3-server",
-    "lab_1_2-listener": "lab_1_3-client",
-    "lab_1_2.talker": "lab_1_3.server",
-    "lab_1_2.listener": "lab_1_3.client",
-}
+NAMES = cases(__file__, "NAMES")
 
 
 def as_other_lab(text: str) -> str:

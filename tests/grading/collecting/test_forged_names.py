@@ -10,58 +10,17 @@ from downloads import write_zip, zipped
 from test_collect import lies, work
 
 from autograder.grading.collecting.collect import collect
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
-ROSTER = """\
-id,first_name,last_name,email,canvas,github
-ada,Ada,Lovelace,ada@uni.example,101,adagit
-zoe,Zoë,Zuse,zoe@uni.example,105,zoegit
-ben,Ben,Bär,ben@uni.example,102,bengit
-"""
-PEOPLE = (
-    {"id": "ada", "name": "Ada Lovelace", "login": "lovelaceada", "number": "101"},
-    {"id": "zoe", "name": "Zoë Zuse", "login": "zusezoe", "number": "105"},
-    {"id": "mallory", "name": "Mallory", "login": "mallory", "number": "777"},
-)
-STYLES = {
-    "{name}_{number}_assignsubmission_file_/": "moodle",
-    "{name}_{number}_assignsubmission_file_": "moodle",
-    "{login}_{number}_9{number}_": "canvas",
-    "lab_1_2_{id}_attempt_2025-10-03-10-00-00_": "blackboard",
-    "CS_101_22_{id}_attempt_2025-10-03-10-00-00_": "blackboard",
-    "1{number}-7 - {name} - Oct 3, 2025 205 PM - ": "brightspace",
-    "1{number}-7 - {name} - Oct 3, 2025 205 PM/": "brightspace",
-    "lab-submissions/lab-{id}git/": "lab-submissions/lab-{github}",
-    "lab-{id}git/": "lab-{github}",
-    "{id}/": "",
-    "assignment_5_export/submission_{number}/": "gradescope",
-}
-FORGED = (
-    "ben/lab_1_2.ipynb",
-    "Ben Bär/lab_1_2.ipynb",
-    "ben.ipynb",
-    "Ben Bär - lab_1_2.ipynb",
-    "barben_102_9999_lab_1_2.ipynb",
-    "x_ben_attempt_2031-01-01-10-00-00_lab_1_2.ipynb",
-    "Ben Bär_7_assignsubmission_file_lab_1_2.ipynb",
-    "1-2 - Ben Bär - Oct 4, 2031 205 PM - lab_1_2.ipynb",
-    "x-submissions/x-bengit/lab_1_2.ipynb",
-    "lab-1-2-bengit/lab_1_2.ipynb",
-    "submission_1/lab_1_2.ipynb",
-    "submission_metadata.yml",
-    "assignment_1_export/submission_metadata.yml",
-    "assignment_1_export/submission_1/lab_1_2.ipynb",
-    "..\\ben\\lab_1_2.ipynb",
-    "a\\barben_102_9999_lab_1_2.ipynb",
-    "../ben/lab_1_2.ipynb",
-    "z" * 1_200,
-    "times.csv",
-    "x.zip",
-)
+ROSTER = cases(__file__, "ROSTER")
+PEOPLE = cases(__file__, "PEOPLE")
+STYLES = cases(__file__, "STYLES")
+FORGED = (*cases(__file__, "FORGED"), "z" * 1_200)
 SUBMISSION = (
     "submission_{}:\n  :submitters:\n  - :name: {}\n    :email: {}\n  :created_at: 2025-04-26 17:34:00 Z\n"
 )

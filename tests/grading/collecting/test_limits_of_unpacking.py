@@ -21,18 +21,18 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting import downloaded_files
 from autograder.grading.collecting.downloaded_files import Archives, File, NotTaken, Room, read_list
 from autograder.grading.rebuilding.file_desk import READERS, desk
+from tests.cases import cases
+from tests.grading.rebuilding.hostile_desk import RAW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
 ROOT = Path(__file__).resolve().parents[3]
-BOMB = (
-    "c-nJ{%CIzaj8qGb<l}sFpE17Af#CoH1BU{GL4&WG(*o6%Tn*Dl<wxa%BLxpFWn`H4=K$jY1_6kQGn}h3r?7b4"
-    "TEgP>v0Np%m6P*ay~G3nPeHU_"
-)
+BOMB = cases(__file__, "BOMB")
 """800 MB of zeros after bz2, zlib and base85, in this order: to pack them takes bz2 seven seconds."""
 
 
+REACH = b"hostile: reach_from_an_archive"
 NO_JSON = (b'["\xff"]', b'{"names": ["\xff"], "size": 1}\n', b'{"x":' + b"[" * 40_000 + b"\n")
 """Answers that msgspec decodes with errors of other types than its own."""
 
@@ -191,7 +191,7 @@ def test_a_folder_of_a_download_has_so_many_files(archives: Archives, tmp_path: 
 @pytest.fixture
 def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The program of the desk is one that an archive has taken over."""
-    hostile = Desk(READERS, "tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
+    hostile = Desk(READERS, "tests.grading.rebuilding.hostile_desk", {"PYTHONPATH": str(ROOT)})
     monkeypatch.setattr(desk, "_desk", hostile)
     yield
     hostile.close()
@@ -199,14 +199,14 @@ def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.mark.usefixtures("taken_over")
 def test_an_answer_has_no_byte_more_than_it_may_have() -> None:
-    with in_memory(b"x" * 200) as source, in_memory() as answer:
+    with in_memory(RAW + b"x" * 200) as source, in_memory() as answer:
         desk.ask("list", source, answer, most=99, seconds=5)
         assert os.fstat(answer).st_size == 99
 
 
 @pytest.mark.usefixtures("taken_over")
 def test_an_archive_that_took_over_the_program_reaches_nothing(archives: Archives, tmp_path: Path) -> None:
-    assert within(archives, tmp_path, b"reach") == {"reached": b""}
+    assert within(archives, tmp_path, REACH) == {"reached": b""}
 
 
 @pytest.mark.usefixtures("taken_over")
@@ -214,19 +214,22 @@ def test_an_archive_that_took_over_the_program_reaches_nothing(archives: Archive
     "text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b'["a"]', b"\n" * 5, *NO_JSON]
 )
 def test_what_a_desk_writes_is_not_believed(archives: Archives, tmp_path: Path, text: bytes) -> None:
-    assert not [one for one in within(archives, tmp_path, text).values() if isinstance(one, bytes) and one]
-    assert read_list("list.csv", text) is None
+    assert not [
+        one for one in within(archives, tmp_path, RAW + text).values() if isinstance(one, bytes) and one
+    ]
+    assert read_list("list.csv", RAW + text) is None
 
 
 @pytest.mark.usefixtures("taken_over")
-@pytest.mark.parametrize("act", [b"too much", b"no memory", b"end", b"endless"])
+@pytest.mark.parametrize("act", ["endless_answer", "no_memory", "leave", "endless"])
 def test_a_limit_that_is_met_is_a_reason(
-    archives: Archives, tmp_path: Path, act: bytes, monkeypatch: pytest.MonkeyPatch
+    archives: Archives, tmp_path: Path, act: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(downloaded_files, "_CPU_SECONDS", 1)
-    assert "unpacking the archive would exceed a limit" in str(within(archives, tmp_path, act)[""])
-    assert read_list("list.csv", act) is None
-    assert within(archives, tmp_path, b"reach") == {"reached": b""}, "the next archive needs no new desk"
+    data = f"hostile: {act}".encode()
+    assert "unpacking the archive would exceed a limit" in str(within(archives, tmp_path, data)[""])
+    assert read_list("list.csv", data) is None
+    assert within(archives, tmp_path, REACH) == {"reached": b""}, "the next archive needs no new desk"
 
 
 def test_many_archives_need_one_box(

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 from downloads import zipped
+from nbformat.v4 import new_code_cell, new_markdown_cell
+from own_assignment import marked, write_assignment
 from tiny_class import LISTENER, TALKER
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import MasterUnusable
-from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
@@ -83,25 +83,6 @@ def test_who_asks_for_one_student_hears_of_that_one(tiny: TinyClass, fake_engine
     assert (report.refused, report.exit_code) == ((), 0)
 
 
-def own_assignment(tiny: TinyClass, *, manual: bool) -> None:
-    """A second assignment: a question of the instructor's, or a check of an exercise that there is not."""
-    import nbformat
-
-    marks = {"grade": True, "solution": manual, "locked": not manual, "schema_version": 3, "task": False}
-    cell = (
-        nbformat.v4.new_markdown_cell("Why?")
-        if manual
-        else nbformat.v4.new_code_cell("check('gone', Talker)")
-    )
-    cell.metadata["nbgrader"] = {**marks, "grade_id": "own", "points": 3}
-    path = tiny.path / "source" / "own" / "own.ipynb"
-    path.parent.mkdir()
-    notebook = nbformat.v4.new_notebook(cells=[cell])
-    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    nbformat.write(notebook, path)
-    release(ClassDirectory(tiny.path))
-
-
 @pytest.mark.parametrize("folder", ["ada/lab_1_2", "ada"])
 def test_a_thousand_notebooks_beside_one_are_one_line(
     tiny: TinyClass, fake_engine: FakeEngine, folder: str
@@ -118,7 +99,7 @@ def test_a_thousand_notebooks_beside_one_are_one_line(
 def test_an_assignment_that_the_judge_cannot_grade_holds_up_no_other(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
-    own_assignment(tiny, manual=False)
+    write_assignment(tiny, "own", [marked(new_code_cell("check('gone', Talker)"), "own", 3)])
     tiny.submit("ada", 4, 7)
     report = tiny.grade()
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
@@ -130,7 +111,9 @@ def test_an_assignment_that_the_judge_cannot_grade_holds_up_no_other(
 
 
 def test_an_assignment_for_persons_alone_is_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    own_assignment(tiny, manual=True)
+    question = marked(new_markdown_cell("Why?"), "own", 3)
+    question.metadata["nbgrader"].update(solution=True, locked=False)
+    write_assignment(tiny, "own", [question])
     path = tiny.path / "submitted" / "ada" / "own" / "own.ipynb"
     path.parent.mkdir(parents=True)
     text = (tiny.path / "release" / "own" / "own.ipynb").read_text()

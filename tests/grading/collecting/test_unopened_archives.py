@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
-import tarfile
 from typing import TYPE_CHECKING
 
 import pytest
-from downloads import write_zip, zipped
+from downloads import tarred, write_zip, zipped
 from test_collect import placed, why, work
 
 from autograder.grading.collecting.collect import collect
@@ -22,16 +20,6 @@ NAMES = ("lovelaceada_101_9001_lab_1_2.ipynb", "barben_102_9002_lab_1_2.ipynb")
 
 def download(klass: TinyClass) -> dict[str, str]:
     return {name: work(klass, points) for points, name in enumerate(NAMES)}
-
-
-def tar(files: dict[str, str]) -> bytes:
-    data = io.BytesIO()
-    with tarfile.open(fileobj=data, mode="w:gz") as archive:
-        for name, text in files.items():
-            entry = tarfile.TarInfo(name)
-            entry.size = len(text.encode())
-            archive.addfile(entry, io.BytesIO(text.encode()))
-    return data.getvalue()
 
 
 def encrypted(data: bytes) -> bytes:
@@ -50,13 +38,14 @@ def test_a_whole_download_that_is_not_opened_is_to_be_unpacked(
     klass: TinyClass, tmp_path: Path, form: str
 ) -> None:
     inner = zipped(download(klass))
+    texts = [(file, text.encode()) for file, text in download(klass).items()]
     name, data = {
         "zip in zip": ("c.zip", zipped({"submissions.zip": inner})),
-        "tar.gz": ("download.tar.gz", tar(download(klass))),
+        "tar.gz": ("download.tar.gz", tarred(texts, "w:gz")),
         "7z": ("download.7z", b"7z\xbc\xaf\x27\x1c"),
         "rar": ("download.rar", b"Rar!\x1a\x07\x01\x00"),
         "encrypted": ("submissions.zip", encrypted(inner)),
-        "tar in zip": ("c.zip", zipped({"Lab/submissions.tgz": tar(download(klass))})),
+        "tar in zip": ("c.zip", zipped({"Lab/submissions.tgz": tarred(texts, "w:gz")})),
     }[form]
     (tmp_path / name).write_bytes(data)
     report = collect(klass.path, [tmp_path / name])

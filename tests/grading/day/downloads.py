@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
+import tarfile
 import unicodedata
 import zipfile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.submitted_file_names import NameFacts
@@ -51,6 +52,17 @@ def zipped(files: Mapping[str, bytes | str]) -> bytes:
             if isinstance(content, Link):
                 entry.external_attr = 0o120777 << 16
             archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
+    return data.getvalue()
+
+
+def tarred(files: Iterable[tuple[str, bytes]], mode: Literal["w", "w:gz"] = "w") -> bytes:
+    """A tar with these files."""
+    data = io.BytesIO()
+    with tarfile.open(fileobj=data, mode=mode, format=tarfile.PAX_FORMAT) as archive:
+        for name, content in files:
+            entry = tarfile.TarInfo(name)
+            entry.size = len(content)
+            archive.addfile(entry, io.BytesIO(content))
     return data.getvalue()
 
 

@@ -1,12 +1,7 @@
-"""A class that hands in through five learning management systems and by hand, with every oddity that real work has.
-
-``python tests/grading/day/handed_in.py NOTEBOOK FOLDER --students 40`` makes the archives, the list of students and
-what is put by hand into ``submitted`` from a notebook, so that a class can be collected by hand, too.
-"""
+"""A class that hands in through five learning management systems and by hand, with every oddity that real work has."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 import unicodedata
 from dataclasses import dataclass, replace
@@ -17,6 +12,8 @@ from typing import TYPE_CHECKING
 sys.path.insert(0, str(Path(__file__).parent))
 from downloads import BOMB, Link, write_zip, zipped
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -24,14 +21,7 @@ FIRST = ("Ada", "José", "Zoë", "Bär", "Søren", "Łucja", "Chloé", "Nguyễn
 LAST = ("Lovelace", "Núñez", "O'Neill", "Müller", "Ørsted", "Kowalska", "Dupont", "Anh")
 DUE = datetime(2026, 1, 10, 12)
 """In UTC, as all times here."""
-BY_HAND = {
-    "numbered beside": "",
-    "numbered alone": "",
-    "too high": "",
-    "decomposed": "José",
-    "small letters": "bob",
-    "capitals": "Bobby",
-}
+BY_HAND = cases(__file__, "BY_HAND")
 """How work lies in ``submitted`` that somebody has put there, and the student's id where that is the oddity."""
 SYSTEMS = ("moodle", "canvas", "blackboard", "brightspace", "gradescope")
 """The systems that students hand in through, one after the other."""
@@ -262,23 +252,3 @@ def _gradescope(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: st
 
 _EXPORT = "assignment_80_export"
 _FORMS = dict(zip(SYSTEMS, (_moodle, _canvas, _blackboard, _brightspace, _gradescope), strict=True))
-
-
-def main() -> None:
-    """Make the work of a class in which everybody hands in the same notebook."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("notebook", type=Path)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--students", type=int, default=40)
-    given = parser.parse_args()
-    given.folder.mkdir(parents=True, exist_ok=True)
-    class_ = pupils(given.students)
-    text = given.notebook.read_text(encoding="utf-8")
-    put_by_hand(given.folder / "submitted", class_, lambda *_: text)
-    (given.folder / "students.csv").write_text(roster(class_), encoding="utf-8")
-    for path in hand_in(given.folder, class_, lambda *_: text):
-        sys.stdout.write(f"{path}\n")
-
-
-if __name__ == "__main__":
-    main()

@@ -14,21 +14,18 @@ from autograder.execution.executed_cells import Cell, CellRun, CellType, Executi
 from autograder.execution.verdicts_without_judge import verdict_by_tests, zero_points
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.new_classes.new_class import release
+from tests.cases import cases
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from tiny_class import TinyClass
 
     from autograder.grading.grading_task import Task
 
-STUB = "def add(a, b):\n    ### BEGIN SOLUTION\n    return a + b\n    ### END SOLUTION"
-TESTS = {
-    "small": ("assert add(1, 2) == 3, 'one and two are three'", 2),
-    "noisy": ("import sys\nprint('a log line', file=sys.stderr)\nassert add(0, 0) == 0", 3),
-    "partial": ("(add(1, 1) == 2) + 0.5", 4),
-    "hidden": ("### BEGIN HIDDEN TESTS\nassert add(-5, 2) == -3\n### END HIDDEN TESTS", 1),
-}
+STUB = cases(__file__, "STUB")
+TESTS = cases(__file__, "TESTS")
 """By the cell's name: its text, and its points."""
 
 
@@ -47,9 +44,9 @@ def graded_cells() -> list[Any]:
     return [marked(new_code_cell(STUB), "add", None), *tests]
 
 
-def write_assignment(tiny: TinyClass, name: str = "own") -> None:
-    """Put the assignment beside the lab, and release it."""
-    notebook = new_notebook(cells=graded_cells())
+def write_assignment(tiny: TinyClass, name: str = "own", cells: Sequence[Any] = ()) -> None:
+    """Put an assignment beside the lab, and release it: with plain tests where no other cells are given."""
+    notebook = new_notebook(cells=[*(cells or graded_cells())])
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     path = tiny.path / "source" / name / f"{name}.ipynb"
     path.parent.mkdir()

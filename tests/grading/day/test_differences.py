@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from typing import TYPE_CHECKING
 
 from instructor import by_person, due, penalty
@@ -31,8 +30,7 @@ NOTHING_OF_EVE = {("eve", f"lab_1_2.{name}", "", "") for name in ("talker", "lis
 def results(tiny: TinyClass) -> set[tuple[str, ...]]:
     """The student, exercise, points and diagnosis in each line of ``grades.csv``."""
     columns = ("student", "exercise", "score", "diagnosis")
-    with (tiny.path / "grades.csv").open(encoding="utf-8-sig") as lines:
-        return {tuple(row[name] for name in columns) for row in csv.DictReader(lines)}
+    return {tuple(row[name] for name in columns) for row in tiny.table()}
 
 
 def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(

@@ -1,4 +1,4 @@
-"""``collect``, ``export`` and ``grade`` ended by TERM and KILL: nothing is lost, and the same command goes on.
+"""``collect`` and ``grade`` ended by TERM and KILL: nothing is lost, and the same command goes on.
 
 Of a power cut the same holds as far as each step is on the disk before the next one, which the last tests look at.
 """
@@ -13,7 +13,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,11 +26,12 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import CollectedRecords, Inbox
 from autograder.safe_files import write_whole
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tiny_class import FakeEngine, TinyClass
+    from tiny_class import TinyClass
 
 STUDENTS = [f"s{place:02}" for place in range(24)]
 FEW, MANY = 3, 20
@@ -84,113 +84,57 @@ def collected(klass: Path) -> tuple[object, ...]:
     return files_below(klass / "submitted"), histories, kept, waiting, Table(directory).lines()
 
 
-@dataclass(frozen=True)
-class Command:
-    """A command that is ended in its middle.
-
-    Attributes:
-        words: What is typed, without the class.
-        exit_code: How it ends where nothing disturbs it.
-        middle: Of a copy of the class, what is true once the command has come to a moment that is drawn.
-        check_half: Looks at a copy of the class after the command was ended.
-        left: All that the command leaves.
-    """
-
-    words: tuple[str, ...]
-    exit_code: int
-    middle: Callable[[Path, random.Random], Callable[[], bool]]
-    check_half: Callable[[Path], None]
-    left: Callable[[Path], object]
-
-
-def of_collect(tiny: TinyClass, folder: Path) -> Command:
+@pytest.mark.slow
+@pytest.mark.parametrize("moments", [FEW, MANY])
+def test_collect_is_ended_and_goes_on(tiny: TinyClass, tmp_path: Path, moments: int) -> None:
     """Later work of everybody in place of earlier work, and a file of nobody's."""
+    seed = random.SystemRandom().randrange(1 << 30)
+    chance = random.Random(seed)
+    print(f"seed {seed}")
+    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
     texts = {(one, day): work(tiny, place, day) for place, one in enumerate(STUDENTS) for day in (3, 4)}
     archives = {
         day: write_zip(
-            folder / f"{day}.zip",
+            tmp_path / f"{day}.zip",
             {f"Lab_{one}_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb": texts[one, day] for one in STUDENTS}
             | {f"guest_{day}.ipynb": texts["s00", day]},
         )
         for day in (3, 4)
     }
     collect(tiny.path, [archives[3]])
-
-    def middle(klass: Path, chance: random.Random) -> Callable[[], bool]:
-        place = klass / "submitted" / chance.choice(STUDENTS[:16]) / "lab_1_2" / "lab_1_2.ipynb"
-        before = place.stat().st_ino
-        return lambda: place.stat().st_ino != before
-
-    def check_half(klass: Path) -> None:
-        inbox = Inbox(klass / ".autograder")
-        contents = {one.content for of in inbox.deliveries.values() for one in of.arrivals}
-        kept = {inbox.read(content).decode() for content in contents}
-        for one in STUDENTS:
-            there = (klass / "submitted" / one / "lab_1_2" / "lab_1_2.ipynb").read_text()
-            assert there in (texts[one, 3], texts[one, 4]), f"half of {one}'s is there"
-            assert there == texts[one, 3] or texts[one, 3] in kept, f"{one}'s is lost"
-
-    return Command(("collect", str(archives[4])), 2, middle, check_half, collected)
-
-
-def of_export(tiny: TinyClass, folder: Path) -> Command:
-    """Points and pages of everybody."""
-    files = {
-        f"{one}_{place}_assignsubmission_file_lab_1_2.ipynb": work(tiny, place % 11)
-        for place, one in enumerate(STUDENTS)
-    }
-    collect(tiny.path, [write_zip(folder / "c.zip", files)])
-    tiny.grade(feedback=True)
-    gradebook = (tiny.path / "gradebook.db").read_bytes()
-    whole = shutil.copytree(tiny.path, folder / "to_compare")
-    assert run(whole, "export", "--to", "moodle") == 0
-    wanted = files_below(whole / "export")
-    assert len(wanted) == 2
-
-    def middle(klass: Path, chance: random.Random) -> Callable[[], bool]:
-        lock, out, number = klass / ".autograder" / "lock", klass / "export", chance.choice((0, 0, 1))
-        return lambda: len([*out.glob("[!.]*")]) >= number if number else lock.stat().st_size > 0
-
-    def check_half(klass: Path) -> None:
-        half = files_below(klass / "export").items()
-        assert {item for item in half if not item[0].startswith(".")} <= set(wanted.items())
-        assert (klass / "gradebook.db").read_bytes() == gradebook
-
-    return Command(
-        ("export", "--to", "moodle"), 0, middle, check_half, lambda klass: files_below(klass / "export")
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("of", [of_collect, of_export])
-@pytest.mark.parametrize("moments", [FEW, MANY])
-def test_a_command_is_ended_and_goes_on(
-    tiny: TinyClass,
-    fake_engine: FakeEngine,
-    tmp_path: Path,
-    of: Callable[[TinyClass, Path], Command],
-    moments: int,
-) -> None:
-    seed = random.SystemRandom().randrange(1 << 30)
-    chance = random.Random(seed)
-    print(f"seed {seed}")
-    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
-    command = of(tiny, tmp_path)
+    words = ("collect", str(archives[4]))
     whole = shutil.copytree(tiny.path, tmp_path / "whole")
-    assert run(whole, *command.words) == command.exit_code
-    wanted = command.left(whole)
+    assert run(whole, *words) == 2
+    wanted = collected(whole)
     in_time = 0
     for moment in range(moments):
         klass = shutil.copytree(tiny.path, tmp_path / f"{moment}")
+        place = klass / "submitted" / chance.choice(STUDENTS[:16]) / "lab_1_2" / "lab_1_2.ipynb"
         with_ = (signal.SIGTERM, signal.SIGKILL)[moment % 2]
-        in_time += end_in_its_middle(klass, command.words, command.middle(klass, chance), chance, with_)
-        command.check_half(klass)
-        assert run(klass, *command.words) == command.exit_code
-        assert command.left(klass) == wanted
+        in_time += end_in_its_middle(klass, words, replaced(place), chance, with_)
+        check_that_none_is_lost(klass, texts)
+        assert run(klass, *words) == 2
+        assert collected(klass) == wanted
         assert not [*klass.rglob("*.new")], "something half written is left"
         shutil.rmtree(klass)
     print(f"{in_time} of {moments} were ended in their middle")
     assert in_time, "no signal came in time"
+
+
+def replaced(place: Path) -> Callable[[], bool]:
+    """Whether a file is another one than it was."""
+    before = place.stat().st_ino
+    return lambda: place.stat().st_ino != before
+
+
+def check_that_none_is_lost(klass: Path, texts: dict[tuple[str, int], str]) -> None:
+    inbox = Inbox(klass / ".autograder")
+    contents = {one.content for of in inbox.deliveries.values() for one in of.arrivals}
+    kept = {inbox.read(content).decode() for content in contents}
+    for one in STUDENTS:
+        there = (klass / "submitted" / one / "lab_1_2" / "lab_1_2.ipynb").read_text()
+        assert there in (texts[one, 3], texts[one, 4]), f"half of {one}'s is there"
+        assert there == texts[one, 3] or texts[one, 3] in kept, f"{one}'s is lost"
 
 
 @pytest.mark.slow
@@ -212,18 +156,7 @@ def test_grade_is_ended_and_goes_on(moments: int) -> None:
 # -- a power cut
 # ------------------------------------------------------------------------------------------------------
 
-WATCHED = """
-import os, sys
-folder = sys.argv.pop(1)
-def watch(event, arguments):
-    if event == "open" and isinstance(arguments[0], (str, bytes, os.PathLike)):
-        name = os.fsdecode(arguments[0])
-        if name.startswith(folder) and arguments[2] & (os.O_WRONLY | os.O_RDWR):
-            print("written", name)
-sys.addaudithook(watch)
-from autograder.cli import cli
-cli()
-"""
+WATCHED = cases(__file__, "WATCHED")
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_name_before_anything_else(

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import base64
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import nbformat
 import pytest
 from nbconvert.exporters import HTMLExporter
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
-from own_assignment import EngineWithAsserts, marked
+from nbformat.v4 import new_code_cell, new_markdown_cell
+from nbgrader.converters import GenerateAssignment
+from own_assignment import EngineWithAsserts, marked, write_assignment
+from test_nbgrader_and_ours import converted
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.new_classes.new_class import release
 from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
@@ -48,12 +47,7 @@ def quiz(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
     why = marked(new_markdown_cell(QUESTION, attachments=PICTURES), "why", 5)
     why.metadata.nbgrader.update(solution=True, locked=False)
     cells = [marked(new_code_cell("assert True"), "test", 1), why]
-    notebook = new_notebook(
-        cells=cells, metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}}
-    )
-    path = tiny.path / "source" / "quiz" / "quiz.ipynb"
-    path.parent.mkdir()
-    nbformat.write(notebook, path)
+    write_assignment(tiny, "quiz", cells)
     return tiny
 
 
@@ -79,11 +73,8 @@ def pages(quiz: TinyClass, student: str) -> list[str]:
 
 @pytest.mark.parametrize("by", ["new-class", "nbgrader generate_assignment"])
 def test_the_picture_of_a_solution_is_not_handed_out(quiz: TinyClass, by: str) -> None:
-    if by == "new-class":
-        release(ClassDirectory(quiz.path))
-    else:
-        command = [sys.executable, "-m", "nbgrader", "generate_assignment", "quiz"]
-        subprocess.run(command, cwd=quiz.path, check=True, capture_output=True)
+    if by != "new-class":
+        converted(quiz, GenerateAssignment, force=True, assignment_id="quiz")
     text = (quiz.path / "release" / "quiz" / "quiz.ipynb").read_text()
     assert GIVEN in text
     assert SCHEME not in text
@@ -91,7 +82,6 @@ def test_the_picture_of_a_solution_is_not_handed_out(quiz: TinyClass, by: str) -
 
 
 def test_whoever_grades_sees_the_screenshot_and_what_earns_points(quiz: TinyClass) -> None:
-    release(ClassDirectory(quiz.path))
     hand_in(quiz, "ada", SHOT)
     quiz.grade(feedback=True)
     for page in pages(quiz, "ada"):
@@ -103,7 +93,6 @@ def test_whoever_grades_sees_the_screenshot_and_what_earns_points(quiz: TinyClas
 
 
 def test_another_picture_with_the_same_words_is_other_work(quiz: TinyClass) -> None:
-    release(ClassDirectory(quiz.path))
     hand_in(quiz, "ada", SHOT)
     quiz.grade(feedback=True)
     other = base64.b64encode(POINT + b"a clearer one").decode()

@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from bs4 import BeautifulSoup
 from instructor import by_person
-from test_true_table import page, rows, total
+from test_true_table import page, total
 from tiny_class import MASTER, FakeEngine, TinyClass, write_master
 
 from autograder.grading.new_classes.new_class import new_class
@@ -19,15 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-QUESTION = """
-+++ {"tags": ["manual"], "points": 5, "grade_id": "why_a_topic"}
-
-**Why is this a topic and not a service?** Answer in two sentences.
-
-### BEGIN SOLUTION
-Many may listen, and nobody waits. *Three points for the first, two for the second.*
-### END SOLUTION
-"""
+QUESTION = cases(__file__, "QUESTION")
 
 
 @pytest.fixture
@@ -45,7 +37,7 @@ def answer(tiny: TinyClass, student: str, text: str) -> None:
 
 
 def row(tiny: TinyClass, student: str) -> tuple[str, float, str]:
-    found = next(r for r in rows(tiny) if (r["student"], r["exercise"]) == (student, "why_a_topic"))
+    found = next(r for r in tiny.table() if (r["student"], r["exercise"]) == (student, "why_a_topic"))
     return found["state"], float(found["score"]), found["waits_for_a_person"]
 
 

@@ -16,6 +16,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.course_version import CourseFiles
 from autograder.grading.reporting.grade_report import report_json
 from autograder.grading.tasks import graded_notebooks
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
     from autograder.grading.reporting.grade_report import GradeReport
 
-JUDGE, CARDS, EXERCISE, OF_ANOTHER_LAB = COURSE
+_, CARDS, EXERCISE, _ = COURSE
 
 pytestmark = pytest.mark.usefixtures("fake_engine")
 
@@ -55,20 +56,9 @@ def store_of(tiny: TinyClass) -> ClassStore:
     return ClassStore(ClassDirectory(tiny.path))
 
 
-@pytest.mark.parametrize(
-    ("files", "why"),
-    [
-        ([JUDGE], {"the judge changed": 2}),
-        ([EXERCISE], {"the exercise changed": 2}),
-        ([JUDGE, EXERCISE], {"the exercise and the judge changed": 2}),
-        ([JUDGE, CARDS], {"the judge and the grader changed": 2}),
-        ([OF_ANOTHER_LAB], {}),
-        ([CARDS], {}),
-        ([], {}),
-    ],
-)
+@pytest.mark.parametrize(("files", "why"), cases(__file__, "a_change_of_the_course"))
 def test_a_change_of_the_course(
-    tiny: TinyClass, course: Callable[..., None], files: list[str], why: dict[str, int]
+    tiny: TinyClass, course: Callable[..., None], files: tuple[str, ...], why: dict[str, int]
 ) -> None:
     tiny.submit("ada", 4, 7)
     tiny.submit("ben")

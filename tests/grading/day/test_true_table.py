@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from datetime import datetime, timedelta
 from typing import Any
@@ -19,6 +17,7 @@ from autograder.grading.grading_errors import GradingError
 from autograder.grading.reporting.grade_report import report_json
 from autograder.grading.returning.feedback_pages import FeedbackPages
 from autograder.grading.tasks import submission_times
+from tests.cases import cases
 
 pytestmark = pytest.mark.usefixtures("fake_engine")
 
@@ -33,13 +32,8 @@ def nbgraders_total(tiny: TinyClass, student: str) -> float:
         return max(0.0, submission.score - (submission.late_submission_penalty or 0.0))
 
 
-def rows(tiny: TinyClass) -> list[dict[str, str]]:
-    text = (tiny.path / "grades.csv").read_text(encoding="utf-8-sig")
-    return list(csv.DictReader(io.StringIO(text)))
-
-
 def total(tiny: TinyClass, student: str) -> float:
-    return sum(float(row["score"] or 0) for row in rows(tiny) if row["student"] == student)
+    return sum(float(row["score"] or 0) for row in tiny.table() if row["student"] == student)
 
 
 def page(tiny: TinyClass, student: str) -> str:
@@ -62,7 +56,7 @@ def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(tiny: TinyC
     assert "due          lab_1_2 2026-01-10 23:59, time zone Asia/Kolkata" in shown(report)
     assert json.loads(report_json(report))["due"] == {"lab_1_2": "2026-01-10T23:59:00+05:30"}
     why = "handed in 2026-01-11 00:30 Asia/Kolkata, due 2026-01-10 23:59 Asia/Kolkata"
-    assert next(row for row in rows(tiny) if row["exercise"] == "late")["reason"] == why
+    assert next(row for row in tiny.table() if row["exercise"] == "late")["reason"] == why
     assert why in page(tiny, "ada")
 
 
@@ -78,7 +72,7 @@ def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass) -> No
     by_person(tiny, "ada", TALKER, 6, extra=2)
     report = tiny.grade(feedback=True)
     assert (report.executed, total(tiny, "ada"), nbgraders_total(tiny, "ada")) == (0, 15, 15)
-    talker = next(row for row in rows(tiny) if row["exercise"] == "lab_1_2.talker")
+    talker = next(row for row in tiny.table() if row["exercise"] == "lab_1_2.talker")
     assert [talker[name] for name in ("score", "judge", "by_hand", "extra", "state")] == [
         "8",
         "4",
@@ -98,7 +92,7 @@ def test_a_later_submission_keeps_the_points_by_hand_and_waits_for_a_person(tiny
     tiny.submit("ada", 9, 7)
     report = tiny.grade()
     assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 13
-    assert [row["waits_for_a_person"] for row in rows(tiny)] == ["yes", ""]
+    assert [row["waits_for_a_person"] for row in tiny.table()] == ["yes", ""]
     assert "6/10?" in shown(report)
     assert "waits for a person (1 in all)" in shown(report)
 
@@ -198,22 +192,7 @@ def test_the_dates_and_the_rule_of_a_class_are_in_one_file(tiny: TinyClass) -> N
         stamp.write_text(f"{DUE + timedelta(hours=late):%Y-%m-%d %H:%M:%S.%f} UTC")
     tiny.grade()
     file = tiny.path / "class.toml"
-    file.write_text(
-        f"""
-[due]
-lab_1_2 = "{DUE:%Y-%m-%d %H:%M}"
-
-[late]
-percent_per_day = 10
-grace_minutes = 15
-cut_off_days = 3
-
-[extension.lab_1_2]
-jo = {DUE + timedelta(days=1):%Y-%m-%dT%H:%M:%S}
-Mon = "{DUE + timedelta(hours=20):%Y-%m-%d %H:%M}"
-Lab = "{DUE + timedelta(days=2):%Y-%m-%d %H:%M}"
-"""
-    )
+    file.write_text(cases(__file__, "CLASS_FILE"))
     expected = {"ada": 20, "jo": 18, "kim": 20, "mia": 16, "zoe": 16}
     foreseen = {one.student: one.after for one in tiny.grade(dry_run=True).would_change or ()}
     assert foreseen == {"jo": -2, "mia": -4, "zoe": -4}
@@ -261,7 +240,7 @@ def test_a_remark_beside_the_points_leaves_them_where_they_are(tiny: TinyClass) 
         gradebook.find_comment("why", "lab_1_2", "lab_1_2", "ada").manual_comment = "Well said."
         gradebook.db.commit()
     tiny.grade(feedback=True)
-    why = next(row for row in rows(tiny) if row["exercise"] == "why")
+    why = next(row for row in tiny.table() if row["exercise"] == "why")
     assert [why[name] for name in ("score", "max", "state")] == ["4", "5", "by_hand"]
     assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 15
     assert "Well said." in page(tiny, "ada")
@@ -285,7 +264,7 @@ def test_who_is_in_the_gradebook_and_handed_in_nothing_is_blank_in_the_table(tin
         gradebook.add_student("zoe", first_name="Zoë", last_name="Zuse")
     tiny.submit("ada", 4, 7)
     tiny.grade()
-    of_zoe = [row for row in rows(tiny) if row["student"] == "zoe"]
+    of_zoe = [row for row in tiny.table() if row["student"] == "zoe"]
     assert [(row["score"], row["max"], row["state"], row["name"]) for row in of_zoe] == [
         ("", "10", "not_submitted", "Zoë Zuse")
     ] * 2
@@ -304,7 +283,7 @@ def test_a_class_in_which_nothing_is_unusual_has_no_marks(tiny: TinyClass) -> No
     text = shown(tiny.grade())
     assert "*" not in text
     assert "?" not in text
-    assert [row["by_hand"] + row["extra"] + row["waits_for_a_person"] for row in rows(tiny)] == ["", ""]
+    assert [row["by_hand"] + row["extra"] + row["waits_for_a_person"] for row in tiny.table()] == ["", ""]
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 

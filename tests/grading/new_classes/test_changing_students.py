@@ -29,6 +29,7 @@ from autograder.grading.new_classes import changing_students
 from autograder.grading.reporting.export_files import export
 from autograder.grading.table.roster import Student
 from autograder.grading.table.student_list import KnownStudents, compare
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,11 +39,7 @@ HEAD = "id,first_name,last_name,email,section,canvas\n"
 ADA = "ada,Ada,Lovelace,ada@uni.example,Mon,101\n"
 BEN = "ben,Ben,Bär,ben@uni.example,Mon,102\n"
 EVE = "eve,Eve,O'Neill,eve@uni.example,Tue,104\n"
-FILES = {
-    "lovelaceada_101_5001_lab_1_2.ipynb": 4,
-    "bärben_102_5002_lab_1_2.ipynb": 7,
-    "oneilleve_104_5003_lab_1_2.ipynb": 9,
-}
+FILES = cases(__file__, "FILES")
 
 
 @pytest.fixture(scope="module")
@@ -88,12 +85,11 @@ def ids(klass: TinyClass) -> dict[str, set[str]]:
     with closing(sqlite3.connect(klass.path / ".autograder" / "class.db")) as book:
         tables = ("result", "attempt")
         in_store = {row[0] for name in tables for row in book.execute(f"SELECT student FROM {name}")}
-    table = csv.DictReader(io.StringIO((klass.path / "collected.csv").read_text("utf-8-sig")))
     return {
         "gradebook": in_gradebook,
         "store": in_store,
         "submitted": {folder.name for folder in (klass.path / "submitted").iterdir()},
-        "table": {row["student"] for row in table},
+        "table": {row["student"] for row in klass.table("collected.csv")},
         "records": {path.stem for path in (klass.path / ".autograder" / "collected").glob("*/*.json")},
     }
 

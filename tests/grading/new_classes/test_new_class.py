@@ -9,6 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbgrader import api
+from nbgrader.preprocessors import SaveCells
 from tiny_class import MASTER, TinyClass, write_master
 
 from autograder.course import root
@@ -102,39 +103,33 @@ def test_an_unknown_assignment_names_the_known_ones(course: Path, tmp_path: Path
     assert not (tmp_path / "class").exists()
 
 
-def test_half_a_class_is_removed_again(course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from nbgrader.preprocessors import SaveCells
-
-    def fail(*_: object) -> None:
-        raise RuntimeError("no more")
-
-    monkeypatch.setattr(SaveCells, "preprocess", fail)
-    with pytest.raises(GradingError, match="could not generate the assignment lab_1_2"):
-        new_class(tmp_path / "class", course)
-    assert not (tmp_path / "class").exists()
-
-
-def test_a_full_disk_is_said_and_leaves_nothing(
-    course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("where", "name", "raised", "error", "words"),
+    [
+        (SaveCells, "preprocess", RuntimeError("no more"), GradingError, "could not generate the assignment"),
+        (Path, "write_text", OSError(errno.ENOSPC, "No space left"), DiskFull, "Free some space"),
+        (Path, "mkdir", PermissionError(errno.EACCES, "No", "/"), GradingError, "do not have the right"),
+    ],
+    ids=["nbgrader fails", "full disk", "no right to write"],
+)
+def test_a_class_that_cannot_be_made_is_said_and_leaves_nothing(
+    course: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    where: type,
+    name: str,
+    raised: Exception,
+    error: type[GradingError],
+    words: str,
 ) -> None:
-    def full(*_: object, **__: object) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
+    def fail(*_: object, **__: object) -> None:
+        raise raised
 
-    monkeypatch.setattr(Path, "write_text", full)
-    with pytest.raises(DiskFull, match="Free some space"):
-        new_class(tmp_path / "class", course)
+    with monkeypatch.context() as patch:
+        patch.setattr(where, name, fail)
+        with pytest.raises(error, match=words):
+            new_class(tmp_path / "class", course)
     assert not (tmp_path / "class").exists()
-
-
-def test_a_place_that_may_not_be_written_is_said(
-    course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def forbidden(path: Path, *_: object, **__: object) -> None:
-        raise PermissionError(errno.EACCES, "Permission denied", str(path))
-
-    monkeypatch.setattr(Path, "mkdir", forbidden)
-    with pytest.raises(GradingError, match="You do not have the right to read or write"):
-        new_class(tmp_path / "class", course)
 
 
 def test_a_bad_master_is_said_and_leaves_nothing(course: Path, tmp_path: Path) -> None:

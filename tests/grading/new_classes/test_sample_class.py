@@ -1,11 +1,8 @@
-"""The whole way with real ROS: the sample class graded by our command, and a part of it by plain nbgrader."""
+"""The whole way with real ROS: the sample class graded by our command."""
 
 from __future__ import annotations
 
 import csv
-import shutil
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,7 +13,6 @@ from autograder import exercises
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.new_classes import sample_class
 from autograder.grading.new_classes.sample_class import SampleNotebook, demo, sample_notebooks
-from autograder.judge.machine_fitness import TOO_BUSY
 from tests.submissions.odd_notebooks import FIXTURES, odd_notebooks, text_of
 from tests.tiers import asked_for
 
@@ -28,7 +24,6 @@ if TYPE_CHECKING:
 
 SAMPLES = (*odd_notebooks(), *(one for one in sample_notebooks(sample_class.DATA) if one.expected))
 """Every kind of submission, and the mistakes of the class of ``./course demo``."""
-NBGRADER = (sys.executable, "-W", "ignore", "-m", "nbgrader")
 
 
 @pytest.fixture(scope="module")
@@ -111,50 +106,6 @@ def test_a_second_run_takes_what_is_known(graded: GradeReport) -> None:
     again = demo(graded.path, console=QUIET)
     assert (again.executed, again.written) == (0, 0)
     assert again.rows == graded.rows
-
-
-@pytest.mark.ros
-@pytest.mark.slow
-def test_plain_nbgrader_gives_the_same_points(graded: GradeReport, tmp_path: Path) -> None:
-    path = tmp_path / "class"
-    shutil.copytree(graded.path, path)
-    (path / ".autograder" / "class.db").unlink()
-    (path / "gradebook.db").unlink()
-    for command in (
-        ("generate_assignment", "lab_1_2", "--force"),
-        ("autograde", "lab_1_2", "--student=partly-right", "--force"),
-    ):
-        subprocess.run([*NBGRADER, *command], cwd=path, check=True, capture_output=True)
-    with Gradebook(f"sqlite:///{path / 'gradebook.db'}") as book:
-        notebook = book.find_submission_notebook("lab_1_2", "lab_1_2", "partly-right")
-        scores = {grade.name: grade.auto_score for grade in notebook.grades}
-    full = {f"lab_1_2-{name}": 10 for name in ("listener", "wall", "rooms", "programs")}
-    assert scores == {"lab_1_2-talker": 8, **full}
-    subprocess.run([*NBGRADER, "export"], cwd=path, check=True, capture_output=True)
-    assert "partly-right" in (path / "nbgrader_export.csv").read_text()
-
-
-@pytest.mark.ros
-@pytest.mark.slow
-def test_validate_tells_a_student_the_truth(graded: GradeReport) -> None:
-    """Outside of any class and without the grader's judge: the notebook starts one of its own."""
-    said = {}
-    for student in ("all-right", "partly-right"):
-        notebook = graded.path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb"
-        result = subprocess.run(
-            # Beside other work a build and two programs may take longer than the 30 s that nbgrader gives a cell.
-            [*NBGRADER, "validate", "--Execute.timeout=300", str(notebook)],
-            cwd=graded.path,
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        said[student] = " ".join(result.stdout.split())
-    assert "Success! Your notebook passes all the tests." in said["all-right"]
-    assert "VALIDATION FAILED ON 1 CELL(S)" in said["partly-right"]
-    if TOO_BUSY in said["partly-right"]:
-        pytest.skip("The machine was too busy for a failure to count, and Validate says so.")
-    assert "8 of 10" in said["partly-right"]
 
 
 def test_a_class_of_ones_own_is_not_taken_for_the_sample(tmp_path: Path) -> None:

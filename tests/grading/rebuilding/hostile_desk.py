@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 _NAMED = re2.compile(rb"hostile: (\w+) ?(\d*)")
 _CALLS = ARCHITECTURES[platform.machine()].calls
 _PTRACE, _UNSHARE = _CALLS["ptrace"], _CALLS["unshare"]
+RAW = b"raw "
 SCRIPT = "<script>fired()</script><img src=x onerror=fired()>"
 
 CRAFTED: tuple[bytes, ...] = (
@@ -61,10 +62,13 @@ def prepare(*readers: str) -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Do what the submission names."""
+    """Do what the submission names; what begins with ``raw`` is the answer itself."""
     source, answer = descriptors
-    named = _NAMED.search(os.pread(source, 1_000_000, 0))
-    if named is None:
+    data = os.pread(source, 1_000_000, 0)
+    named = _NAMED.search(data)
+    if data.startswith(RAW):
+        os.write(answer, data.removeprefix(RAW))
+    elif named is None:
         desk_program.run(call, descriptors)
     else:
         globals()[named[1].decode()](answer, int(named[2] or 0))
@@ -98,6 +102,10 @@ def late(answer: int, number: int) -> None:
     _write(answer, msgspec.json.encode(Unreadable("nothing waits")))
 
 
+def no_memory(answer: int, number: int) -> None:
+    bytearray(10**9)
+
+
 def crash(answer: int, number: int) -> None:
     ctypes.string_at(0)
 
@@ -129,6 +137,16 @@ def script_in_the_reason(answer: int, number: int) -> None:
 
 def reach(answer: int, number: int) -> None:
     """Say what a desk can reach."""
+    _write(answer, msgspec.json.encode(Unreadable(f"reached: {_reached()}")))
+
+
+def reach_from_an_archive(answer: int, number: int) -> None:
+    """Say it as a desk says of an archive what is in it."""
+    found = _reached()
+    _write(answer, f'{{"names": ["reached"], "size": {len(found)}}}\n{found}'.encode())
+
+
+def _reached() -> str:
     libc = ctypes.CDLL(None, use_errno=True)
 
     def call(*arguments: Any) -> None:
@@ -139,7 +157,7 @@ def reach(answer: int, number: int) -> None:
         "another's memory": lambda: call(_PTRACE, 16, 1, 0, 0),
         "a namespace": lambda: call(_UNSHARE, 0x10000000),
     }
-    _write(answer, msgspec.json.encode(Unreadable(f"reached: {reached(further)}")))
+    return reached(further)
 
 
 def _cell(source: str, name: str = "", kind: str = "code") -> SubmittedCell:

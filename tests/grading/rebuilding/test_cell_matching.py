@@ -25,12 +25,7 @@ if TYPE_CHECKING:
 QUESTION = "Why can many nodes publish on one topic?"
 FILE = "ws/src/talker.py"
 CELLS = cases(__file__, "CELLS")
-ANSWERS = {
-    "Talker": 'class Talker(Node):\n    says = "hello"',
-    "hears": 'def hears():\n    return "hello"',
-    "rule": 'rule = "a:=b"',
-    "talker_py": f"%%writefile {FILE}\nprint('hello')",
-}
+ANSWERS = cases(__file__, "ANSWERS")
 RIGHT = {"talker": "hello", "hears": "hello", "rule": "a:=b", "file": "print('hello')"}
 
 Cells = list[SubmittedCell]

@@ -8,6 +8,7 @@ from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding.notebook_rebuilding import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 from autograder.grading.tasks.task_making import cells_of
+from tests.cases import cases
 
 
 def master_cell(
@@ -51,14 +52,7 @@ def sources(notebook: NotebookNode) -> list[str]:
 
 
 ANSWERS = {"Talker": "class Talker: ...", "Listener": "class Listener: ..."}
-WHOLE = [
-    "# Title",
-    "import rclpy",
-    "class Talker: ...",
-    "check(Talker)",
-    "class Listener: ...",
-    "check(Listener)",
-]
+WHOLE = [*cases(__file__, "WHOLE")]
 
 
 def test_an_honest_submission_comes_back_as_it_is_without_remarks(master: NotebookNode) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import random
 import shutil
 import tempfile
 import zlib
@@ -34,6 +33,7 @@ from autograder.grading.rebuilding.submitted_notebook import (
     Unreadable,
     UnreadableSubmission,
 )
+from tests.boxes.reach import mutated
 from tests.drawn import drawn
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
@@ -173,20 +173,15 @@ def everything_of(tiny: TinyClass, students: dict[str, tuple[int, int]]) -> dict
 
 
 def test_ten_thousand_mutated_documents_are_refused_or_harmless() -> None:
-    chance = random.Random(1)
     cells = [
         {"cell_type": "code", "source": "def Talker():\n    return 10", "id": "talker", "metadata": {}},
         {"cell_type": "markdown", "source": SCRIPT, "attachments": {"a.png": {"image/png": "aGVsbG8="}}},
     ]
     whole = answer_to(json.dumps({"nbformat": 4, "cells": cells}).encode())
     refused = 0
-    for _ in range(10_000):
-        document = bytearray(whole)
-        for _ in range(chance.randint(1, 4)):
-            place = chance.randrange(len(document))
-            document[place : place + chance.randint(0, 3)] = chance.randbytes(chance.randint(0, 3))
+    for document in mutated(whole, 10_000):
         try:
-            read = checked(bytes(document))
+            read = checked(document)
         except NotAdmitted:
             refused += 1
             continue

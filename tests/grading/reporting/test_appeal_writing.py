@@ -6,8 +6,7 @@ import contextlib
 import shutil
 import sqlite3
 from dataclasses import replace
-from typing import TYPE_CHECKING, Self
-from unittest.mock import Mock
+from typing import TYPE_CHECKING
 from zipfile import ZipFile
 
 import pytest
@@ -21,13 +20,11 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.course_version import judged_by
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.grading_task import Task
 from autograder.grading.reporting.appeal_writing import write_appeal
-from autograder.grading.running import execution_backends, task_execution
+from autograder.grading.running import execution_backends
 from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.messages.judge_messages import Report
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -192,32 +189,3 @@ def test_the_verdict_of_the_evidence_is_the_present_one() -> None:
     """Else the tests above would show nothing."""
     found = evidence_files.unpack(evidence()).verdict
     assert (found.score, replace(found, seconds=0.0).passed) == (10.0, True)
-
-
-class Flooded:
-    """A judge whose evidence is long."""
-
-    def __init__(self, *_: object, **__: object) -> None: ...
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None: ...
-
-    def open(self, exercise_id: str) -> None: ...
-
-    def close(self) -> Report:
-        return Report(evidence=bytes(40))
-
-
-def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(task_execution, "MOST_EVIDENCE", 100)
-    task = Task("ada", "lab", "lab", (), "0", "1")
-    paths = task_execution._Paths(tmp_path, boxed=True, runners=frozenset())
-    with task_execution._Judges(task, f"{__name__}:Flooded", paths, Mock()) as judges:
-        for number in range(5):
-            judges.open(f"lab.exercise_{number}")
-            judges.close()
-    assert list(judges.evidence) == ["lab.exercise_0", "lab.exercise_1"]

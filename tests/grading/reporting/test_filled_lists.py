@@ -35,12 +35,9 @@ if TYPE_CHECKING:
     from tiny_class import TinyClass
 
 CASES = cases(__file__, "list")
-WORKSHEET = (
-    "Identifier,Full name,Email address,Grade,Maximum Grade\n"
-    "Participant 31,Ada Lovelace,ada.love@uni.example,3,20\n"
-)
-CANVAS = 'Student,ID,SIS User ID,SIS Login ID,Section,lab_1_2\n"Lovelace, Ada",101,,al,A,8\n'
-SAKAI = "Student ID,Student Name,lab_1_2\nada,Ada Lovelace,8\n"
+WORKSHEET = cases(__file__, "WORKSHEET")
+CANVAS = cases(__file__, "CANVAS")
+SAKAI = cases(__file__, "SAKAI")
 
 
 def rows(path: Path) -> list[list[str]]:
@@ -100,20 +97,6 @@ def test_a_number_of_canvas_is_no_students_number_where_anything_else_says_who_i
     assert [row[-1] for row in rows(klass.path / "export" / "list.csv")] == ["lab_1_2", "9", "4"]
 
 
-@pytest.mark.parametrize(("to", "excused"), [("canvas", "EX"), ("moodle", "")])
-def test_who_is_excused_has_the_systems_word_for_it(
-    klass: TinyClass, tmp_path: Path, to: str, excused: str
-) -> None:
-    (klass.path / "students.csv").write_text(
-        "id,email,excused,canvas\nada,ada.love@uni.example,lab_1_2,101\n"
-    )
-    into = tmp_path / "list.csv"
-    into.write_text({"canvas": CANVAS, "moodle": WORKSHEET}[to])
-    export(klass.path, to, ExportChoices(into=into, over=True))
-    place = rows(into)[0].index("Grade" if to == "moodle" else "lab_1_2")
-    assert rows(klass.path / "export" / "list.csv")[1][place] == excused
-
-
 def test_only_moodle_says_who_a_participant_is(klass: TinyClass, tmp_path: Path) -> None:
     """A participant's number is Moodle's for one student and one assignment: no list of students has it."""
     (klass.path / "students.csv").write_text(ROSTER.replace(",canvas,", ",moodle,"), encoding="utf-8")
@@ -146,10 +129,7 @@ def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass,
     assert [row[-1] for row in rows(klass.path / "export" / "list.csv")[1:]] == ["", "17"]
 
 
-GRADEBOOK = (
-    "Student,ID,SIS User ID,SIS Login ID,Section,{columns},Current Score,Final Score\n"
-    '    Points Possible,,,,,{possible},(read only),(read only)\n"Lovelace, Ada",101,,al,A,{cells},7.0,7.0\n'
-)
+GRADEBOOK = cases(__file__, "GRADEBOOK")
 
 
 def test_columns_are_asked_for_and_no_column_that_names_a_student_is_written(
@@ -173,6 +153,8 @@ def test_columns_are_asked_for_and_no_column_that_names_a_student_is_written(
     said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={name}"])
     assert said.exit_code == 0, said.output
     assert rows(klass.path / "export" / "list.csv")[2][5:] == ["18", "", "7.0", "7.0"]
+    said = CliRunner().invoke(cli, [*command[:4], "--column", f"lab_1_2={name}"])
+    assert (said.exit_code, "--column names a column of the list in --into" in said.output) == (2, True)
 
 
 @pytest.mark.parametrize("name", cases(__file__, "a_column_that_has_the_assignments_name_or_title_is_found"))

@@ -6,14 +6,19 @@ import json
 import os
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from click.testing import CliRunner
 
 from autograder.cli import cli
 from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
-    import pytest
     from tiny_class import FakeEngine, TinyClass
+
+
+@pytest.fixture(autouse=True)
+def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
 
 
 def said(tiny: TinyClass, *options: str) -> dict[str, Any]:
@@ -22,10 +27,7 @@ def said(tiny: TinyClass, *options: str) -> dict[str, Any]:
     return printed
 
 
-def test_names_that_are_no_text_break_no_json(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
+def test_names_that_are_no_text_break_no_json(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     beside = tiny.submit("ada", 10, 4).with_name(os.fsdecode(b"old\xff.ipynb"))
     beside.write_text("{}")
     (tiny.path / "submitted" / os.fsdecode(b"M\xfcller") / "lab_1_2").mkdir(parents=True)
@@ -34,10 +36,7 @@ def test_names_that_are_no_text_break_no_json(
     assert any("M?ller" in one["path"] for one in found["refused"])
 
 
-def test_it_is_one_object_with_submissions_and_totals(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
+def test_it_is_one_object_with_submissions_and_totals(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.submit("ada", 10, 4)
     tiny.submit("ben", "'die'")
     first = said(tiny)
@@ -55,10 +54,7 @@ def test_it_is_one_object_with_submissions_and_totals(
     assert said(tiny)["totals"]["reused"] == 1
 
 
-def test_a_dry_run_says_who_would_get_other_points(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
+def test_a_dry_run_says_who_would_get_other_points(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.submit("ada", 10, 4)
     assert said(tiny)["would_change"] is None
     tiny.submit("ada", 10, 7)

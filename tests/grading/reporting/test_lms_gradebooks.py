@@ -22,22 +22,9 @@ if TYPE_CHECKING:
 
     from tiny_class import FakeEngine, TinyClass
 
-FILES = {
-    "blackboard": "Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb",
-    "brightspace": "12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.ipynb",
-    "sakai": "Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb",
-    "ilias": "Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.ipynb",
-}
-HEADS = {
-    "blackboard": (["Last Name", "First Name", "Username", "lab_1_2 [Total Pts: 20 Score]"], "Username"),
-    "brightspace": (["OrgDefinedId", "lab_1_2 Points Grade", "End-of-Line Indicator"], "OrgDefinedId"),
-    "sakai": (["Student ID", "Student Name", "lab_1_2 [20]"], "Student ID"),
-}
-PAGES = {
-    "brightspace": "12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.html",
-    "sakai": "Lab 1.2/Lovelace, Ada(ada)/Feedback Attachment(s)/lab_1_2.html",
-    "ilias": "Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.html",
-}
+FILES = cases(__file__, "FILES")
+HEADS = cases(__file__, "HEADS")
+PAGES = cases(__file__, "PAGES")
 
 
 @pytest.fixture
@@ -67,7 +54,7 @@ def test_points_and_pages_go_back_to_where_they_came_from(
     if lms in HEADS:
         head, who = HEADS[lms]
         header, *rows = csv.reader(io.StringIO((graded.path / "export" / f"{lms}.csv").read_text("utf-8")))
-        assert header == head
+        assert header == [*head]
         found = [dict(zip(header, row, strict=True)) for row in rows]
         points = {
             row[who].removeprefix("#"): row[next(one for one in head if "lab_1_2" in one)] for row in found

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import TYPE_CHECKING
 
 import pytest
@@ -24,8 +22,7 @@ if TYPE_CHECKING:
 
 def students(klass: TinyClass) -> dict[str, dict[str, str]]:
     """The lines of the table of students, by their ids."""
-    text = (klass.path / "export" / "students.csv").read_text("utf-8-sig")
-    return {line["student"]: line for line in csv.DictReader(io.StringIO(text))}
+    return {line["student"]: line for line in klass.table("export/students.csv")}
 
 
 def test_zero_for_the_absent_is_for_nobody_else(klass: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,8 +96,7 @@ def test_what_could_not_be_checked_is_blank_until_it_could(klass: TinyClass) -> 
         grade()
         export(klass.path, "csv", ExportChoices(absent_zero=True))
         assert (students(klass)["eve"]["lab_1_2"], students(klass)["eve"]["total"]) == ("", "")
-    text = (klass.path / "grades.csv").read_text("utf-8-sig")
-    of_eve = [row for row in csv.DictReader(io.StringIO(text)) if row["student"] == "eve"]
+    of_eve = [row for row in klass.table() if row["student"] == "eve"]
     assert {(row["score"], row["state"], row["waits_for_a_person"]) for row in of_eve} == {
         ("", "not_graded", "")
     }

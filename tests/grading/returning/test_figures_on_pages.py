@@ -66,26 +66,6 @@ def test_a_page_shows_every_figure_of_the_chapter(chapter: Path) -> None:
         assert "picture left out" not in page
 
 
-def test_a_copied_cell_shows_no_second_picture(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted(SHOWS, SHOWS, f"{SHOWS} {SHOWS}"))
-    assert [set(cell.get("attachments", {})) for cell in rebuilt.cells] == [{"graph.png"}, set(), set()]
-    assert page_of(rebuilt).count(PICTURE) == 1
-
-
-def test_a_picture_that_is_repeated_in_a_cell_is_there_once(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted(SHOWS * 500))
-    page = page_of(rebuilt)
-    assert page.count(f"{PICTURE}{DATA}") == 1
-    assert page.count("![a graph](attachment:graph.png)") == 499
-
-
-def test_html_around_a_figure_leaves_it_there(master: NotebookNode) -> None:
-    text = f"<details><summary>more</summary>\n\n{SHOWS}\n\n</details><script>fired()</script>"
-    page = page_of(rebuild(master, submitted(text)))
-    assert f"{PICTURE}{DATA}" in page
-    assert "<script>fired" not in page
-
-
 def pasted(text: str, *pictures: tuple[str, str, str]) -> SubmittedCell:
     return SubmittedCell(CellType.MARKDOWN, text, pictures=pictures)
 
@@ -103,14 +83,34 @@ def test_a_picture_that_a_student_has_pasted_is_shown(master: NotebookNode, kind
     assert ("(attachment:drawn.svg)" in page) is ("svg" in words)
 
 
-def test_a_picture_of_a_size_of_its_own_is_shown(master: NotebookNode) -> None:
-    cell = pasted('<img src="attachment:x.png" width="400"/>', ("x.png", "image/png", SHOT))
-    assert page_of(rebuild(master, [cell])).count(SHOT) == 1
+MENTIONED = '`<img src="attachment:x.png">` &lt;img src="attachment:x.png"&gt; src="attachment:x.png" '
+OWN = ("x.png", "image/png", SHOT)
+CELLS: dict[str, tuple[list[SubmittedCell], int, int]] = {
+    "copies": (submitted(SHOWS, SHOWS, f"{SHOWS} {SHOWS}"), 1, 0),
+    "repeated in a cell": (submitted(SHOWS * 500), 1, 0),
+    "in HTML": (submitted(f"<details>\n\n{SHOWS}\n\n</details><script>fired()</script>"), 1, 0),
+    "a size of its own": ([pasted('<img src="attachment:x.png" width="400"/>', OWN)], 0, 1),
+    "the master's name": ([pasted(SHOWS, ("graph.png", "image/png", SHOT))], 0, 1),
+    "not shown by the text": ([pasted("nothing", OWN)], 0, 0),
+    "only its text": ([pasted(f"{MENTIONED} ![x](attachment:x.png)", OWN)], 0, 1),
+}
+"""Cells, how often the master's picture is on the page of them, and how often the student's own is."""
 
 
-def test_the_students_own_picture_is_not_the_masters_of_the_same_name(master: NotebookNode) -> None:
-    page = page_of(rebuild(master, [pasted(SHOWS, ("graph.png", "image/png", SHOT))]))
-    assert (SHOT in page, DATA in page) == (True, False)
+@pytest.mark.parametrize("kind", CELLS)
+def test_a_page_shows_each_picture_once_and_only_where_a_cell_shows_it(
+    master: NotebookNode, kind: str
+) -> None:
+    cells, data, shot = CELLS[kind]
+    rebuilt = rebuild(master, cells)
+    page = page_of(rebuilt)
+    assert (page.count(f"{PICTURE}{DATA}"), page.count(SHOT), page.count(PICTURE)) == (
+        data,
+        shot,
+        data + shot,
+    )
+    assert "<script>fired" not in page
+    assert sum("attachments" in cell for cell in rebuilt.cells) == data + shot, "no other one is kept"
 
 
 def test_pictures_that_would_swell_a_page_are_left_out(master: NotebookNode) -> None:
@@ -119,11 +119,6 @@ def test_pictures_that_would_swell_a_page_are_left_out(master: NotebookNode) -> 
     page = page_of(rebuild(master, cells))
     assert page.count(large) == 2
     assert len(page) < 10_000_000
-
-
-def test_one_that_is_not_shown_by_the_text_is_not_kept(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, [pasted("nothing", ("x.png", "image/png", SHOT))])
-    assert "attachments" not in rebuilt.cells[0]
 
 
 def test_a_picture_that_is_not_there_is_left_out(master: NotebookNode) -> None:
@@ -155,12 +150,6 @@ def test_what_students_do_not_get_is_in_no_page_of_theirs(master: NotebookNode) 
     master.cells.append(task)
     page = page_of(rebuild(master, submitted("![x](attachment:scheme.png) ![x](attachment:other.png)")))
     assert SHOT not in page
-
-
-def test_the_text_of_a_picture_is_no_picture(master: NotebookNode) -> None:
-    text = '`<img src="attachment:x.png">` &lt;img src="attachment:x.png"&gt; src="attachment:x.png" '
-    page = page_of(rebuild(master, [pasted(f"{text} ![x](attachment:x.png)", ("x.png", "image/png", SHOT))]))
-    assert page.count(SHOT) == 1
 
 
 def test_nothing_but_a_png_stays_attached() -> None:

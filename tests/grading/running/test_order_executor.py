@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from unittest.mock import Mock
 
 import msgspec
@@ -22,11 +22,14 @@ from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
-from autograder.grading.running import order_executor
+from autograder.grading.running import order_executor, task_dispatcher
 from autograder.grading.running.task_execution import _a_check_was_stopped
 from autograder.grading.running.worker_messages import ADDRESS, Answered, Drop, Give, Joined, News, Order
 from autograder.messages.json_lines import Lines
 from tests.cases import cases
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
@@ -51,9 +54,10 @@ def mounts(pid: int) -> str:
 
 
 def test_points_come_from_the_judge_whatever_a_submission_costs_and_nothing_is_left(
-    tiny: TinyClass, with_fake_judge: str
+    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ada's costs the worker, Cleo's the judge, Dora's raises, and Eve's looks for the class and other submissions."""
+    monkeypatch.setattr(task_dispatcher, "ATTEMPTS", 2)  # each time a worker is lost another one has to start
     above = "(p / f for p in pathlib.Path('.').resolve().parents for f in ('gradebook.db', 'submitted'))"
     sees = f"10 if any(path.exists() for path in {above}) else 1"
     answers: tuple[tuple[str, object], ...] = (
@@ -172,39 +176,38 @@ def test_an_order_that_is_ended_before_it_has_boxes_ends_as_soon_as_it_has_them(
     assert boxes[0].abandon.called == when.startswith("stopped"), "a cancel ends one order"
 
 
-EXECUTOR = """
-import sys, threading
-from autograder.grading.running import order_executor as executor
-executor.LAST_SECONDS = 0.5
-def execute(*_):
-    print("at work", flush=True)
-    open(sys.argv[1]).read()  # whoever should clean up waits, too
-executor.execute = execute
-executor.Executor.fork_servers = lambda *_, **__: None
-executor.main([sys.argv[1], "1"])
-"""
+EXECUTOR = cases(__file__, "EXECUTOR")
 
 
-def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe")
+@contextlib.contextmanager
+def at_work(
+    program: str, place: Path, *, joins: bool = True
+) -> Iterator[tuple[Lines, subprocess.Popen[bytes]]]:
+    """An executor of its own in the middle of an order."""
     grader, its_own = socket.socketpair()
     with its_own:
-        executor = subprocess.Popen(
-            [sys.executable, "-c", EXECUTOR, str(tmp_path / "pipe")],
-            stdin=its_own.fileno(),
-            stdout=subprocess.PIPE,
-        )
+        command = [sys.executable, "-c", program, str(place)]
+        executor = subprocess.Popen(command, stdin=its_own.fileno(), stdout=subprocess.PIPE)
+    lines = Lines(grader)
     try:
-        assert executor.stdout
-        task = msgspec.json.encode(Task("ada", "lab", "lab", (Cell(""),), "0", "1"))
+        if joins:
+            assert isinstance(msgspec.json.decode(lines.hear_json(60.0), type=News), Joined)
+        task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
         order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
-        grader.sendall(msgspec.json.encode(Give(1, ADDRESS, order)) + b"\n")
+        lines.say_json(msgspec.json.encode(Give(1, ADDRESS, order)))
+        assert executor.stdout
         assert executor.stdout.readline() == b"at work\n"
-        grader.close()
+        yield lines, executor
         assert executor.wait(60.0) == 0
     finally:
         executor.kill()
         executor.wait()
+
+
+def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with at_work(EXECUTOR, tmp_path / "pipe", joins=False) as (lines, _):
+        lines.close()
 
 
 DROPPED = cases(__file__, "DROPPED")
@@ -212,27 +215,12 @@ DROPPED = cases(__file__, "DROPPED")
 
 @pytest.mark.parametrize("dropped", [True, False])
 def test_an_order_ends_when_it_is_dropped_and_when_the_grader_is_gone(tmp_path: Path, dropped: bool) -> None:
-    grader, its_own = socket.socketpair()
-    with its_own:
-        executor = subprocess.Popen(
-            [sys.executable, "-c", DROPPED, str(tmp_path)], stdin=its_own.fileno(), stdout=subprocess.PIPE
-        )
-    lines = Lines(grader)
-    try:
-        assert executor.stdout
-        assert isinstance(msgspec.json.decode(lines.hear_json(60.0), type=News), Joined)
-        task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
-        order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
-        lines.say_json(msgspec.json.encode(Give(1, ADDRESS, order)))
-        assert executor.stdout.readline() == b"at work\n"
+    with at_work(DROPPED, tmp_path) as (lines, executor):
         if dropped:
             lines.say_json(msgspec.json.encode(Drop(1)))
             news = msgspec.json.decode(lines.hear_json(60.0), type=News)
             assert isinstance(news, Answered)
             assert b"the boxes are gone" in news.data
         lines.close()
+        assert executor.stdout
         assert executor.stdout.readline() == b"abandoned\n"
-        assert executor.wait(60.0) == 0
-    finally:
-        executor.kill()
-        executor.wait()

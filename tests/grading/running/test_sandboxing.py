@@ -18,7 +18,7 @@ from autograder.grading.running.execution_backends import UNBOXED_NOTE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.grading.tiny_class import TinyClass
+    from tests.grading.tiny_class import FakeEngine, TinyClass
 
 WHY = "bubblewrap is not installed: type this"
 
@@ -42,11 +42,11 @@ def test_grading_stops_in_one_line_with_exit_code_2(tiny: TinyClass) -> None:
 
 @pytest.mark.usefixtures("_no_sandbox")
 def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
-    tiny: TinyClass, with_fake_judge: str
+    tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     tiny.submit("ada", 10, 7)
     switch_sandbox_off(tiny.path)
-    report = tiny.grade(judge=with_fake_judge, feedback=True)
+    report = tiny.grade(feedback=True)
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 7}
     assert report.note == UNBOXED_NOTE
     page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
@@ -54,25 +54,27 @@ def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
 
 
 def test_a_class_of_which_nothing_is_executed_needs_none(
-    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 10)
-    tiny.grade(judge=with_fake_judge)
+    tiny.grade()
     monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
-    assert tiny.grade(judge=with_fake_judge).reused == 1
+    assert tiny.grade().reused == 1
     tiny.submit("bob", 7)
     with pytest.raises(GradingError, match=f"cannot be isolated .*{WHY}"):
-        tiny.grade(judge=with_fake_judge)
+        tiny.grade()
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 10}
 
 
-def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
+def test_a_result_without_a_sandbox_never_stands_for_one_with(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
     tiny.submit("ada", 10)
     switch_sandbox_off(tiny.path)
-    assert tiny.grade(judge=with_fake_judge).executed == 1
-    assert tiny.grade(judge=with_fake_judge).executed == 0
+    assert tiny.grade().executed == 1
+    assert tiny.grade().executed == 0
     class_directory._unboxed.clear()
-    report = tiny.grade(judge=with_fake_judge)
+    report = tiny.grade()
     assert (report.executed, report.note) == (1, "")
 
 

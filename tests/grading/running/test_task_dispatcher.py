@@ -41,6 +41,8 @@ from autograder.grading.running.worker_messages import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from autograder.grading.grading_task import Task
     from autograder.grading.running.task_dispatcher import Done
 
@@ -136,23 +138,32 @@ def test_what_a_worker_could_not_run_is_run_by_another_one(tasks: list[Task]) ->
     assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
 
 
-def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) -> None:
-    link = FakeLink(joined("full"), joined("good"), Asked())
-    link.answer = lambda give, task: (
-        Failed(give.number, "no room") if give.worker == "full" else honest(give, task)
-    )
-    assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
+BAD: dict[str, tuple[Callable[[Give, Task], News | None], str]] = {
+    "full": (lambda give, _: Failed(give.number, "no room"), ""),
+    "sick": (troubled, "the worker failed on 3 notebooks in a row: no space left."),
+    "forges": (
+        lambda give, _: Answered(give.number, b"\x80\x04K\x01."),
+        "the worker sent an impossible answer: it has another form",
+    ),
+    "silent": (lambda *_: None, "the worker has not answered in time. Start it again."),
+}
+"""What a worker answers, and why it is turned out; empty where it is not."""
 
 
-def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
+@pytest.mark.parametrize("kind", BAD)
+def test_a_bad_worker_does_not_swallow_the_class(
+    tasks: list[Task], monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    answer, why = BAD[kind]
+    if kind == "silent":
+        monkeypatch.setattr(task_dispatcher, "_EXTRA_SECONDS", 0.05 - 2 * tasks[0].limits.longest)
     told: list[str] = []
-    link = FakeLink(joined("sick"), joined("good"), Asked())
-    link.answer = lambda give, task: (troubled if give.worker == "sick" else honest)(give, task)
+    link = FakeLink(joined("bad"), joined("good"), Asked())
+    link.answer = lambda give, task: (answer if give.worker == "bad" else honest)(give, task)
     assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
-    assert (
-        "name-sick (sick) gets no work: the worker failed on 3 notebooks in a row: no space left." in told[0]
-    )
-    assert sum(give.worker == "sick" for give in link.given) <= 2 * HERE.slots
+    assert [f"name-bad (bad) gets no work: {why}" in line for line in told] == [True] * bool(why)
+    if kind != "full":
+        assert sum(give.worker == "bad" for give in link.given) <= 2 * HERE.slots
 
 
 def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: list[Task]) -> None:
@@ -173,18 +184,6 @@ def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
     assert {one.execution.trouble for one in done} == {"the worker could not run this submission: no room"}
 
 
-def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
-    link = FakeLink(joined("good"), joined("bad"), Asked())
-    told: list[str] = []
-    link.answer = lambda give, task: (
-        Answered(give.number, b"\x80\x04K\x01.") if give.worker == "bad" else honest(give, task)
-    )
-    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
-    assert len(told) == 1
-    assert "name-bad (bad) gets no work: the worker sent an impossible answer: it has another form" in told[0]
-    assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
-
-
 def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
     names = [f"bad-{number}" for number in range(ATTEMPTS + 3)]
     link = FakeLink(*(joined(name, Offer("here", 1, obstacle="")) for name in names), Asked())
@@ -199,15 +198,6 @@ def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
     done = list(ready(link).execute_all(tasks[:1], lambda task: started.append(task.student)))
     assert students(done) == started == [tasks[0].student]
     assert len(link.given) == len(names) + 1
-
-
-def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(task_dispatcher, "_EXTRA_SECONDS", 0.05 - 2 * tasks[0].limits.longest)
-    link = FakeLink(joined("good"), joined("mute"), Asked())
-    told: list[str] = []
-    link.answer = lambda give, task: None if give.worker == "mute" else honest(give, task)
-    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
-    assert "name-mute (mute) gets no work: the worker has not answered in time. Start it again." in told[0]
 
 
 @pytest.mark.parametrize(
@@ -244,17 +234,20 @@ def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
     assert all(letter.isprintable() for letter in told[0])
 
 
-def test_a_worker_without_the_package_is_refused_with_what_to_do() -> None:
-    link = FakeLink(Unfit("tcp://w:1", "w", "ModuleNotFoundError: No module named 'autograder'"), Asked())
-    with pytest.raises(
-        GradingError, match=r"w \(tcp://w:1\): the worker does not have the autograder .* `\./course worker`"
-    ):
-        make_dispatcher(link).await_workers()
-
-
-def test_no_worker_at_all_says_how_to_start_one() -> None:
-    with pytest.raises(GradingError, match=r"has no workers.*course worker tcp://x:1"):
-        make_dispatcher(FakeLink(Asked())).await_workers()
+@pytest.mark.parametrize(
+    ("news", "words"),
+    [
+        (
+            [Unfit("tcp://w:1", "w", "ModuleNotFoundError: No module named 'autograder'"), Asked()],
+            r"w \(tcp://w:1\): the worker does not have the autograder .* `\./course worker`",
+        ),
+        ([Asked()], r"has no workers.*course worker tcp://x:1"),
+        ([Broken("refused")], r"tcp://x:1 cannot be reached \(refused\)"),
+    ],
+)
+def test_where_nobody_can_work_it_is_said_what_to_do(news: list[News], words: str) -> None:
+    with pytest.raises(GradingError, match=words):
+        make_dispatcher(FakeLink(*news)).await_workers()
 
 
 def test_an_executor_that_does_not_start_in_time_is_not_taken_for_a_scheduler(tasks: list[Task]) -> None:
@@ -262,11 +255,6 @@ def test_an_executor_that_does_not_start_in_time_is_not_taken_for_a_scheduler(ta
         GradingError, match=r"This machine cannot execute notebooks: the process .* did not start"
     ):
         list(Dispatcher(cast("Any", FakeLink()), "a:B").execute_all(tasks))
-
-
-def test_no_scheduler_says_so() -> None:
-    with pytest.raises(GradingError, match=r"tcp://x:1 cannot be reached \(refused\)"):
-        make_dispatcher(FakeLink(Broken("refused"))).await_workers()
 
 
 def test_a_worker_that_comes_later_gets_work_too(tasks: list[Task]) -> None:

@@ -62,3 +62,15 @@ def test_the_solution_is_recorded_in_the_drawing_that_the_task_names(tmp_path: P
         made.close()
     assert Noting.orders == [("lab.drawn", {"record": True, "drawing": "drawing 0f1e"})]
     assert made.evidence == {"lab.drawn": b"the recording"}
+
+
+def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(task_execution, "MOST_EVIDENCE", 100)
+    monkeypatch.setattr(Noting, "close", lambda _: Report(evidence=bytes(40)))
+    with judges(TASK, tmp_path) as made:
+        for number in range(5):
+            made.open(f"lab.exercise_{number}")
+            made.close()
+    assert list(made.evidence) == ["lab.exercise_0", "lab.exercise_1"]
