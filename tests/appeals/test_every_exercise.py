@@ -26,17 +26,16 @@ ANSWERS = [
     next(
         answer
         for answer in answers([exercise_id])
-        if answer.short_name.startswith(kind) and "syntax_error" not in answer.diagnoses
+        if answer.short_name.startswith("wrong") and "syntax_error" not in answer.diagnoses
     )
     for exercise_id in exercises.all_ids()
     if exercises.get(exercise_id).enough  # the bank has no answers to the question of a ticket
-    for kind in ("right", "wrong")
 ]
 
 
 @pytest.fixture(scope="module", params=ANSWERS, ids=lambda answer: answer.name)
 def seen(request: pytest.FixtureRequest) -> Kept:
-    """What the judge saw of a right and of a wrong answer to each exercise, with what it says of that today."""
+    """What the judge saw of a wrong answer to each exercise, with what it says of that today."""
     answer = request.param
     seen = evidence.record_of(answer, evidence.kept(answer.exercise).get(answer.name)).seen
     return msgspec.structs.replace(seen, verdict=replay(seen).now)

@@ -38,23 +38,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 HERE = Path(__file__).parent
-FAMILIES = {
-    "forging": "forging results in the kernel",
-    "socket": "talking to the judge's socket as if one were the check",
-    "wire": "imitating the judge or another node on the graph",
-    "guessing": "earning points without doing the task",
-    "reading": "reading what is not one's own",
-    "writing": "writing what is not one's own",
-    "breaking": "breaking the grader out or down",
-    "crowding": "using up what all boxes of a user share",
-    "network": "reaching beyond the box",
-    "shadowing": "replacing modules",
-    "crafted": "submissions that are no notebooks, or too much of one",
-}
+FAMILIES = cases(__file__, "FAMILIES")
 USUAL = "lab_1_2"
 
 

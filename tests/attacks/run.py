@@ -33,12 +33,6 @@ def main() -> int:
         UNSAFE, action="store_true", help="without boxes; leaves out what would harm this machine"
     )
     options.add_argument(
-        "--harmless", action="store_true", help="leave out what would harm a machine without boxes"
-    )
-    options.add_argument("--option", action="append", default=[], help="one more option for autograder grade")
-    options.add_argument("--show", action="store_true", help="print what the grader printed")
-    options.add_argument("--keep", type=Path, help="keep the class in this folder")
-    options.add_argument(
         "--as-user",
         action="store_true",
         help=f"as root: let a user without any right grade, with a soft limit of {OPEN_FILES:,} open files",
@@ -47,11 +41,9 @@ def main() -> int:
     chosen = [
         attack for attack in attacks() if not given.names or {attack.name, attack.family} & set(given.names)
     ]
-    extra = list(given.option)
-    if given.unsafe_no_sandbox or given.harmless:
-        chosen = [attack for attack in chosen if not attack.boxed_only]
+    extra = [UNSAFE] if given.unsafe_no_sandbox else []
     if given.unsafe_no_sandbox:
-        extra.append(UNSAFE)
+        chosen = [attack for attack in chosen if not attack.boxed_only]
     failed = 0
     for number in range(given.repeat):
         failed += _run(chosen, extra, given)
@@ -61,11 +53,11 @@ def main() -> int:
 
 def _run(chosen: list[Attack], extra: list[str], given: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="attacks-") as folder, Traps(Path(folder)) as traps:
-        made = AttackClass(given.keep or Path(folder), traps, as_user=given.as_user)
+        made = AttackClass(Path(folder), traps, as_user=given.as_user)
         for attack in chosen:
             made.hand_in(attack)
         graded = made.grade(*extra)
-        if given.show or graded.exit_code:
+        if graded.exit_code:
             print(graded.output[-4000:])
         failed = 0
         for attack in chosen:

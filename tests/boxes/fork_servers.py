@@ -18,6 +18,14 @@ NO_JUDGE = "autograder.boxes.box_supervisor"
 """These tests need none: any module with a \"prepare\" will do."""
 
 
+class SilentJudge:
+    """Sees nothing, so that no check has a verdict."""
+
+    def open(self, exercise_id: str) -> None: ...
+
+    def close(self) -> None: ...
+
+
 @pytest.fixture(scope="session")
 def boxed() -> Iterator[Addresses]:
     """The fork servers of a machine with a sandbox."""

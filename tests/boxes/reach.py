@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import random
 import resource
 import signal
 import socket
@@ -11,7 +12,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
 ATTEMPTS: Mapping[str, Callable[[], Any]] = {
     "a process": os.fork,
@@ -39,3 +40,14 @@ def reached(further: Mapping[str, Callable[[], Any]]) -> str:
             attempt()
             found.append(name)
     return ", ".join(found)
+
+
+def mutated(document: bytes, times: int, seed: int = 1) -> Iterator[bytes]:
+    """Yield a document so often, each time with other bytes in a few places."""
+    chance = random.Random(seed)
+    for _ in range(times):
+        changed = bytearray(document)
+        for _ in range(chance.randint(1, 4)):
+            place = chance.randrange(len(changed))
+            changed[place : place + chance.randint(0, 3)] = chance.randbytes(chance.randint(0, 3))
+        yield bytes(changed)

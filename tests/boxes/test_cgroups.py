@@ -13,13 +13,10 @@ import pytest
 
 from autograder.boxes import cgroups
 from autograder.boxes.cgroups import Controller
+from tests.cases import cases
 
-OLD_OWN = "4:memory:/user/ada\n3:cpu,cpuacct:/\n2:pids:/\n0::/\n"
-OLD_MOUNTS = """\
-31 30 0:27 / /sys/fs/cgroup/memory rw,relatime - cgroup cgroup rw,memory
-32 30 0:28 / /sys/fs/cgroup/pids rw,relatime - cgroup cgroup rw,pids
-33 30 0:29 / /proc rw,relatime shared:4 - proc proc rw
-"""
+OLD_OWN = cases(__file__, "OLD_OWN")
+OLD_MOUNTS = cases(__file__, "OLD_MOUNTS")
 
 
 def test_one_hierarchy_for_each_controller() -> None:

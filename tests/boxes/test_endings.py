@@ -23,10 +23,12 @@ from autograder.boxes.run_limits import open_files_of_a_box
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import WORK, box_environment
 from tests.boxes.fork_servers import NO_JUDGE
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from autograder.boxes.box_connection import Box
     from autograder.boxes.fork_server import Addresses
 
 SECONDS = f"7654.{os.getpid()}"
@@ -34,16 +36,7 @@ SECONDS = f"7654.{os.getpid()}"
 STUBBORN = (
     f"trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep {SECONDS}\" &); sleep {SECONDS}"
 )
-WORKER = """
-import sys, time
-from pathlib import Path
-from autograder.boxes.sandbox import Enclosure
-from tests.boxes.fork_servers import NO_JUDGE
-enclosure = Enclosure(sys.argv[1], Path(sys.argv[2]))
-running = enclosure.start(["sh", "-c", sys.argv[3]])
-print("up", flush=True)
-time.sleep(600)
-"""
+WORKER = cases(__file__, "WORKER")
 
 
 def sleepers() -> list[psutil.Process]:
@@ -109,40 +102,37 @@ def test_killing_anyone_ends_all(
     assert str(tmp_path) not in Path("/proc/self/mountinfo").read_text()
 
 
-def test_a_process_that_entered_ends_with_its_box(supervisors: ForkServer, tmp_path: Path) -> None:
-    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra=SLEEPING)
-    try:
-        with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
-            box = enclosure.box("student")
-            entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
-            process = ForkedProcess(warm.address, entrance, [], box)
-            await_sleepers()
-            assert process.alive
-            box.end()
-            assert process.wait(10.0)
-            assert not process.lost
-            process.end()
-        assert gone()
-    finally:
-        warm.stop()
-
-
-def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_path: Path) -> None:
-    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra=SLEEPING)
-    try:
-        with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
-            box = enclosure.box("student")
-            entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
-            process = ForkedProcess(warm.address, entrance, [], box)
-            inside = psutil.Process(process.pid)
-            process._channel.close()
-            psutil.wait_procs([inside], timeout=180)
-            assert not inside.is_running()
-    finally:
-        warm.stop()
-
-
 SLEEPING = {"PYTHONPATH": str(Path(__file__).resolve().parents[2]), "SLEEPERS_SECONDS": SECONDS}
+
+
+@pytest.fixture
+def entered(supervisors: ForkServer, tmp_path: Path) -> Iterator[tuple[Box, ForkedProcess]]:
+    """A box, and a process of another fork server that has entered it."""
+    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra=SLEEPING)
+    with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
+        box = enclosure.box("student")
+        entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
+        yield box, ForkedProcess(warm.address, entrance, [], box)
+    warm.stop()
+
+
+def test_a_process_that_entered_ends_with_its_box(entered: tuple[Box, ForkedProcess]) -> None:
+    box, process = entered
+    await_sleepers()
+    assert process.alive
+    box.end()
+    assert process.wait(10.0)
+    assert not process.lost
+    process.end()
+    assert gone()
+
+
+def test_a_process_whose_grader_hangs_up_is_killed(entered: tuple[Box, ForkedProcess]) -> None:
+    _, process = entered
+    inside = psutil.Process(process.pid)
+    process._channel.close()
+    psutil.wait_procs([inside], timeout=180)
+    assert not inside.is_running()
 
 
 def test_who_sends_descriptors_to_a_server_may_have_more_in_transit_than_a_box(tmp_path: Path) -> None:

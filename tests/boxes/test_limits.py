@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import psutil
 import pytest
 
 from autograder.boxes import cgroups, limit_guards
@@ -22,6 +21,8 @@ from autograder.execution.notebook_processes import BoxedProcesses, NotebookSett
 from autograder.execution.notebook_runner import run_notebook
 from autograder.judge import controlled_judge
 from autograder.safe_files import scratch_folder
+from tests.boxes.fork_servers import SilentJudge
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,14 +34,6 @@ CHECK = Cell(
 )
 
 Run = Callable[..., Execution]
-
-
-class SilentJudge:
-    def open(self, exercise_id: str) -> None:
-        pass
-
-    def close(self) -> None:
-        return None
 
 
 @pytest.fixture(params=["cgroups", "watched"])
@@ -111,27 +104,13 @@ def test_tables_of_pages_are_memory(tmp_path: Path) -> None:
 
 
 def test_memory_in_sockets_belongs_to_no_process(run: Run) -> None:
-    fill = """
-import socket, time
-held = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(500)]
-for end in held:
-    end.bind(("127.0.0.1", 0))
-    for _ in range(40):
-        end.sendto(bytes(8000), end.getsockname())
-time.sleep(4)
-"""
+    fill = cases(__file__, "memory_in_sockets_belongs_to_no_process")
     execution = run(fill, socket_bytes=20_000_000)
     assert (execution.cells[0].ended, key(execution)) == (Ended.OUT_OF_MEMORY, "out_of_memory")
 
 
 def test_locks_of_files_are_memory_that_no_cgroup_counts(run: Run) -> None:
-    lock = """
-import fcntl, struct, time
-file = open("locked", "w+")
-for part in range(400):
-    fcntl.fcntl(file, fcntl.F_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 2 * part, 1, 0))
-time.sleep({})
-"""
+    lock = cases(__file__, "locks_of_files_are_memory_that_no_cgroup_counts")
     execution = run(lock.format(4), file_locks=300)
     assert (execution.cells[0].ended, key(execution)) == (Ended.TOO_MANY_LOCKS, "too_many_locks")
     assert "locked more parts of files" in execution.verdicts[1].diagnosis.text  # type: ignore[union-attr]
@@ -140,25 +119,13 @@ time.sleep({})
 
 
 def test_connections_that_nobody_accepts_have_no_descriptor(run: Run) -> None:
-    connect = """
-import socket, time
-held = [socket.socket() for _ in range(4)]
-for end in held:
-    end.bind(("127.0.0.1", 0))
-    end.listen(500)
-    for _ in range(200):
-        socket.create_connection(end.getsockname()).close()
-time.sleep(4)
-"""
+    connect = cases(__file__, "connections_that_nobody_accepts_have_no_descriptor")
     execution = run(connect, all_open_files=500)
     assert (execution.cells[0].ended, key(execution)) == (Ended.TOO_MANY_FILES, "too_many_files")
 
 
 def test_memory_that_many_processes_take_together(run: Run) -> None:
-    fork = (
-        "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"
-        "        hoard = bytearray(os.urandom(1000) * 200_000)\n        time.sleep(600)\ntime.sleep(4)"
-    )
+    fork = cases(__file__, "memory_that_many_processes_take_together")
     execution = run(fork, memory_bytes=500_000_000)
     assert key(execution) in ("out_of_memory", "not_asked")
     # With cgroups the system ends one of the five, which need not be the kernel.
@@ -168,16 +135,7 @@ def test_memory_that_many_processes_take_together(run: Run) -> None:
 def test_processes(run: Run, request: pytest.FixtureRequest) -> None:
     # For root without cgroups nothing but the watch is there, and a real bomb may be faster than it.
     slowly = "time.sleep(0.02)" if "watched" in request.node.name and os.geteuid() == 0 else "pass"
-    bomb = f"""
-import os, time
-for _ in range(300):
-    try:
-        if os.fork() == 0:
-            time.sleep(600)
-    except OSError:
-        pass
-    {slowly}
-"""
+    bomb = cases(__file__, "processes").replace("SLOWLY", slowly)
     execution = run(bomb, processes=60, cell_seconds=60.0)
     assert execution.cells[0].ended in (Ended.TOO_MANY_PROCESSES, Ended.DONE)
     assert key(execution) in ("too_many_processes", "not_asked")
@@ -204,19 +162,7 @@ def test_a_bomb_that_was_faster_than_the_watch_is_no_matter_of_files(monkeypatch
 )
 def test_what_a_process_holds_whose_first_thread_has_ended(run: Run, hoard: str, ended: Ended) -> None:
     """Linux shows such a process as a zombie without memory and files (proc_pid_task(5))."""
-    hides = f"""
-import ctypes, os, platform, threading, time
-EXIT = {{"x86_64": 60, "aarch64": 93}}[platform.machine()]
-def hoards():
-    time.sleep(0.2)
-    held = {hoard}
-    time.sleep(600)
-for _ in range(3):
-    if os.fork() == 0:
-        threading.Thread(target=hoards).start()
-        ctypes.CDLL(None).syscall(EXIT, 0)
-time.sleep(5)
-"""
+    hides = cases(__file__, "what_a_process_holds_whose_first_thread_has_ended").replace("HOARD", hoard)
     execution = run(hides, memory_bytes=600_000_000, all_open_files=500)
     assert execution.cells[0].ended is ended
 
@@ -257,10 +203,7 @@ def test_a_user_whose_counters_have_room_is_found_to_have_room() -> None:
 
 
 def test_threads_that_the_system_refuses(run: Run) -> None:
-    threads = (
-        "import threading, time\nfor _ in range(300):\n"
-        "    threading.Thread(target=time.sleep, args=(600,)).start()"
-    )
+    threads = cases(__file__, "threads_that_the_system_refuses")
     execution = run(threads + '\ntime.sleep(3)\nraise RuntimeError("can\'t start new thread")', processes=60)
     assert execution.cells[0].ended in (Ended.TOO_MANY_PROCESSES, Ended.RAISED)
 
@@ -307,10 +250,7 @@ def test_a_line_of_100_megabytes(run: Run) -> None:
 
 def test_an_interrupt_that_meets_the_kernel_itself_leaves_it_alive(run: Run) -> None:
     """It is stopped behind the cell's code, where its output is flushed: then no answer to the cell ever comes."""
-    hangs_once = (
-        "import sys, time\nflush = sys.stdout.flush\ndef once():\n    sys.stdout.flush = flush\n    time.sleep(600)\n"
-        "sys.stdout.flush = once"
-    )
+    hangs_once = cases(__file__, "an_interrupt_that_meets_the_kernel_itself_leaves_it_alive")
     execution = run(hangs_once, cell_seconds=2.0)
     assert execution.cells[0].ended is Ended.TIMED_OUT
     assert "alive" in str(execution.cells[1].outputs)
@@ -328,17 +268,8 @@ def test_an_error_of_a_limit_has_its_own_word() -> None:
     assert "space" in verdict.diagnosis.text
 
 
-def test_nothing_is_left(run: Run) -> None:
-    sleep = ["sleep", f"4321.{os.getpid()}"]  # another run of the tests beside this one has sleepers, too
-    run(f"import subprocess\nsubprocess.Popen({sleep}, start_new_session=True)")
-    assert [p for p in psutil.process_iter(["cmdline"]) if p.info["cmdline"] == sleep] == []
-
-
 def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> None:
-    many = (
-        "import os, time\nfor _ in range(60):\n    if os.fork() == 0:\n"
-        "        hoard = bytearray(os.urandom(1000) * 9_000)\n        time.sleep(600)\ntime.sleep(3)"
-    )
+    many = cases(__file__, "many_small_processes_cannot_take_the_watcher_with_them")
     execution = run(many, memory_bytes=400_000_000)
     # Whoever is ended, it is one of the box, and the submission's own doing.
     assert execution.trouble == ""

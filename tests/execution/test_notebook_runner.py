@@ -21,6 +21,7 @@ from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS
 from autograder.safe_files import scratch_folder
 from autograder.verdict import Diagnosis, State, Verdict, failed
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from autograder.execution.kernel_channels import Channels
@@ -47,9 +48,14 @@ class SayingJudge:
 Run = Callable[..., Execution]
 
 
-@pytest.fixture(params=["in a box", "beside one"])
+BOTH = pytest.mark.parametrize("run", ["in a box", "beside one"], indirect=True)
+"""For what depends on how a kernel's process is made; all else is the same code, and is asked in a box."""
+
+
+@pytest.fixture
 def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxed: Addresses) -> Run:
-    addresses, kind = (boxed, BoxedProcesses) if request.param == "in a box" else (unboxed, UnboxedProcesses)
+    is_boxed = getattr(request, "param", "in a box") == "in a box"
+    addresses, kind = (boxed, BoxedProcesses) if is_boxed else (unboxed, UnboxedProcesses)
 
     def go(
         cells: Sequence[Cell | str],
@@ -89,9 +95,23 @@ def key(execution: Execution, index: int = -1) -> str:
     return diagnosis.key if diagnosis else ""
 
 
-def test_only_the_judge_gives_points(run: Run) -> None:
-    execution = run(["x = 1", check("raise SystemError('but the judge has seen enough')")], passed(7))
-    assert execution.verdicts[1].score == 7
+@BOTH
+def test_only_the_judge_gives_points_whatever_cells_do_besides(run: Run) -> None:
+    execution = run(
+        [
+            Cell("raise SystemExit", CellType.MARKDOWN),
+            "import sys; print('[INFO] up', file=sys.stderr)",
+            "sys.exit()",
+            "input('name? ')",
+            check("raise SystemError('but the judge has seen enough')"),
+        ],
+        passed(7),
+    )
+    ended = [cell.ended for cell in execution.cells]
+    assert ended == [Ended.DONE, Ended.DONE, Ended.RAISED, Ended.RAISED, Ended.RAISED]
+    assert execution.cells[1].outputs[0]["name"] == "stderr"
+    assert "StdinNotImplementedError" in execution.cells[3].error
+    assert execution.verdicts[4].score == 7
     assert execution.trouble == ""
 
 
@@ -124,16 +144,16 @@ def test_a_judge_that_met_the_rest_of_an_endless_cell_says_so(run: Run, own: boo
     assert key(execution, 1) == "never_published", "the loop is before another check"
 
 
+@BOTH
 def test_a_loop_that_will_not_be_interrupted_costs_the_kernel(run: Run) -> None:
-    stubborn = (
-        "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True:\n    time.sleep(1)"
-    )
+    stubborn = cases(__file__, "a_loop_that_will_not_be_interrupted_costs_the_kernel")
     execution = run([stubborn, check()], passed(), cell_seconds=0.5, interrupt_grace=0.5)
     assert [cell.ended for cell in execution.cells] == [Ended.TIMED_OUT, Ended.NOT_RUN]
     assert key(execution) == "notebook_timed_out"
     assert execution.verdicts[1].score == 0
 
 
+@BOTH
 @pytest.mark.parametrize("end", ["exit()", "import os; os._exit(0)", "import os; os.kill(os.getpid(), 9)"])
 def test_a_kernel_that_ends_is_named_with_its_cell(run: Run, end: str) -> None:
     execution = run(["x = 1", end, check()], passed())
@@ -148,24 +168,6 @@ def test_a_kernel_that_ends_in_one_check_is_named_in_the_next(run: Run) -> None:
     assert "exit()  # in a check" in execution.verdicts[2].diagnosis.text  # type: ignore[union-attr]
 
 
-def test_sys_exit_ends_the_cell_and_not_the_notebook(run: Run) -> None:
-    execution = run(["import sys; sys.exit()", check()], passed())
-    assert [cell.ended for cell in execution.cells] == [Ended.RAISED, Ended.DONE]
-    assert execution.verdicts[1].passed
-
-
-def test_the_notebook_as_a_whole_has_a_limit(run: Run) -> None:
-    execution = run(["1", "import time; time.sleep(600)", "2", check()], passed(), notebook_seconds=2.0)
-    assert [cell.ended for cell in execution.cells] == [
-        Ended.DONE,
-        Ended.TIMED_OUT,
-        Ended.NOT_RUN,
-        Ended.NOT_RUN,
-    ]
-    assert key(execution) == "notebook_timed_out"
-    assert execution.verdicts[3].score == 0
-
-
 def test_a_cells_seconds_last_as_long_as_the_machine_makes_them(run: Run) -> None:
     def crowded(seconds: float) -> Left:
         asked.append(seconds)
@@ -178,26 +180,16 @@ def test_a_cells_seconds_last_as_long_as_the_machine_makes_them(run: Run) -> Non
 
 
 def test_the_notebooks_limit_is_wall_time_however_crowded_the_machine_is(run: Run) -> None:
-    execution = run(
-        ["import time; time.sleep(600)", check()],
-        passed(),
-        patient=lambda _: lambda: 1.0,
-        notebook_seconds=1.0,
-    )
-    assert [cell.ended for cell in execution.cells] == [Ended.TIMED_OUT, Ended.NOT_RUN]
-
-
-def test_a_log_line_on_stderr_costs_nothing(run: Run) -> None:
-    execution = run(["import sys; print('[INFO] up', file=sys.stderr)", check()], passed())
-    assert execution.cells[0].outputs[0]["name"] == "stderr"
-    assert execution.verdicts[1].score == 10
+    cells = ["1", "import time; time.sleep(600)", "2", check()]
+    execution = run(cells, passed(), patient=lambda _: lambda: 1.0, notebook_seconds=2.0)
+    ended = [Ended.DONE, Ended.TIMED_OUT, Ended.NOT_RUN, Ended.NOT_RUN]
+    assert [cell.ended for cell in execution.cells] == ended
+    assert key(execution) == "notebook_timed_out"
+    assert execution.verdicts[3].score == 0
 
 
 def test_output_of_a_thread_is_not_lost(run: Run) -> None:
-    thread = (
-        "import threading\ngo = threading.Event()\n"
-        "t = threading.Thread(target=lambda: (go.wait(), print('late', flush=True)))\nt.start()"
-    )
+    thread = cases(__file__, "output_of_a_thread_is_not_lost")
     execution = run([thread, "go.set(); t.join(); print('now')"])
     texts = ["".join(o.get("text", "") for o in cell.outputs) for cell in execution.cells]
     assert "late" in "".join(texts)
@@ -217,17 +209,7 @@ def test_a_cell_as_long_as_a_cell_may_be_is_run(run: Run) -> None:
     assert "".join(str(output["text"]) for output in execution.cells[1].outputs) == "33323\n"
 
 
-def test_input_is_refused_at_once(run: Run) -> None:
-    execution = run(["input('name? ')"])
-    assert execution.cells[0].ended is Ended.RAISED
-    assert "StdinNotImplementedError" in execution.cells[0].error
-
-
-def test_what_is_printed_behind_a_line_that_is_long_on_its_way(run: Run) -> None:
-    execution = run(["print('x' * 40_000_000)", "print('alive')"])
-    assert "alive" in str(execution.cells[1].outputs)
-
-
+@BOTH
 def test_no_process_of_the_notebook_survives(run: Run) -> None:
     token = f"600.{secrets.randbelow(10**12)}"
     execution = run(
@@ -278,11 +260,7 @@ def test_a_check_that_is_stopped_at_a_limit_earns_nothing_whatever_the_judge_had
         assert (execution.verdicts[0].score, key(execution)) == (score, why)
 
 
-def test_markdown_is_not_executed(run: Run) -> None:
-    execution = run([Cell("raise SystemExit", CellType.MARKDOWN), "1"])
-    assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
-
-
+@BOTH
 def test_the_kernel_knows_nothing_of_the_hosts_variables(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COURSE_TOKEN", "secret")
     execution = run(["import os; print(os.environ.get('COURSE_TOKEN'), os.environ['HOME'], os.getcwd())"])
@@ -310,38 +288,29 @@ def test_a_kernel_without_a_box_is_no_fault_of_the_judge(tmp_path: Path) -> None
     assert execution.trouble == "the kernel could not be started: no room for a box"
 
 
+@BOTH
 def test_two_kernels_of_one_fork_server_have_nothing_in_common(run: Run) -> None:
-    draw = (
-        "import os, random, secrets, tempfile, uuid, numpy\n"
-        "print(random.random(), numpy.random.random(), uuid.uuid4(), secrets.token_hex(8), tempfile.mktemp())"
-    )
+    draw = cases(__file__, "two_kernels_of_one_fork_server_have_nothing_in_common")
     first, second = (run([draw]).cells[0].outputs[0]["text"].split() for _ in range(2))
     assert len(first) == 5
     assert [a for a, b in zip(first, second, strict=True) if a == b] == []
 
 
+@BOTH
 def test_a_kernel_begins_as_a_fresh_one_does(run: Run) -> None:
-    look = (
-        "import os, signal, sys, threading\n"
-        "print(len(In), [m for m in ('rehearsal', 'tests') if m in sys.modules], sys.argv[1:], __name__,\n"
-        "      signal.getsignal(signal.SIGCHLD), [t.name for t in threading.enumerate() if 'Dummy' in t.name])"
-    )
+    look = cases(__file__, "a_kernel_begins_as_a_fresh_one_does")
     text = run([look]).cells[0].outputs[0]["text"].strip()
     # Programs that look at sys.argv meet in a cell of JupyterLab what its kernels were started with.
     assert text == "2 [] ['-f', 'kernel.json'] __main__ 0 []"
 
 
+@BOTH
 def test_a_crash_leaves_no_core(run: Run) -> None:
     crash = "import os, subprocess\nsubprocess.run(['sh', '-c', 'kill -SEGV $$'])\nprint(os.listdir('.'))"
     assert run([crash]).cells[0].outputs[0]["text"] == "[]\n"
 
 
+@BOTH
 def test_ros_works_in_a_kernel_and_among_its_children(run: Run) -> None:
-    talk = (
-        "import rclpy\nfrom std_msgs.msg import String\nrclpy.init()\nnode = rclpy.create_node('n')\n"
-        "heard = []\nnode.create_subscription(String, 't', heard.append, 10)\n"
-        "publisher = node.create_publisher(String, 't', 10)\n"
-        "while not heard:\n    publisher.publish(String(data='x'))\n    rclpy.spin_once(node, timeout_sec=0.05)\n"
-        "print(heard[0].data)\nnode.destroy_node()\nrclpy.shutdown()"
-    )
+    talk = cases(__file__, "ros_works_in_a_kernel_and_among_its_children")
     assert run([talk]).cells[0].outputs[0]["text"] == "x\n"

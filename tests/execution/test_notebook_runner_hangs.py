@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.execution.executed_cells import Cell, CellCheck
 from autograder.execution.notebook_runner import _Run
+from tests.boxes.fork_servers import SilentJudge
 
 if TYPE_CHECKING:
     from autograder.boxes.run_limits import Left
-    from autograder.verdict import Verdict
 
 LIMITS = Limits(cell_seconds=120, check_margin=10)
 CHECK = CellCheck("lab.one", "One", 10, 10, limit=120)
@@ -31,14 +31,6 @@ class Kernel:
         del cell, left
         is_use = not source.startswith("class") and any(name in source for name in self._hanging)
         return Ended.TIMED_OUT if is_use else Ended.DONE
-
-
-class SilentJudge:
-    """Has nothing to say."""
-
-    def open(self, exercise_id: str) -> None: ...
-
-    def close(self) -> Verdict | None: ...
 
 
 def seconds(cells: list[Cell], *hanging: str) -> tuple[list[float], str]:

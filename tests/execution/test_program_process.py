@@ -19,6 +19,7 @@ from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import HOME, Bind, box_environment
 from autograder.judge.ros_setup import boxed_ros_environment
 from autograder.workspaces.program_plans import ros2
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -31,59 +32,7 @@ PACKAGE = "some_pkg"
 READY = "ready"
 """A program that says this gets a Ctrl-C."""
 
-PROGRAMS = {
-    "says_hello": "print('hello')",
-    "has_arguments": "import sys; print(sys.argv, sys.stdin.read(), __name__, __file__, sys.path[0])",
-    "exits_with_three": "import sys; print('x'); sys.exit(3)",
-    "exits_with_words": "import sys; sys.exit('bad')",
-    "raises": "def f():\n    raise ValueError('no')\nf()",
-    "raises_from": "try:\n    1 / 0\nexcept ZeroDivisionError as e:\n    raise ValueError('no') from e",
-    "has_no_syntax": "def f(:\n",
-    "needs_no_future": "def f(x: Nowhere): pass\nprint('never')",
-    "aborts": "import os; os.abort()",
-    "is_killed": "import os, signal; os.kill(os.getpid(), signal.SIGKILL)",
-    "reads_address_zero": "import ctypes; ctypes.string_at(0)",
-    "has_a_thread": "import threading, time\n"
-    "threading.Thread(target=lambda: (time.sleep(0.1), print('late'))).start()",
-    "has_an_exit_handler": "import atexit; atexit.register(print, 'bye')",
-    "has_a_destructor": "class A:\n    def __del__(self):\n        print('gone')\na = A()",
-    "has_an_exception_hook": "import sys\nsys.excepthook = lambda *a: print('mine', a[0])\n1 / 0",
-    "has_a_node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\nnode.get_logger().info('hi')\n"
-    "print(sorted(node.get_topic_names_and_types()))\nrclpy.shutdown()",
-    "leaves_its_node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\nprint('end')",
-    "spins": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\n"
-    f"timer = node.create_timer(0.1, lambda: (print('{READY}'), timer.cancel()))\nrclpy.spin(node)",
-    "sleeps": f"import time\nprint('{READY}')\ntime.sleep(60)",
-    "catches_ctrl_c": f"import time\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
-    "except KeyboardInterrupt:\n    print('ok')",
-    "has_a_child_in_another_session": "import os, signal, time\nheard, tells = os.pipe()\nif not os.fork():\n"
-    "    os.setsid()\n    signal.signal(signal.SIGINT, lambda *_: print('me, too'))\n    os.write(tells, b'.')\n"
-    f"    time.sleep(3)\n    os._exit(0)\nos.read(heard, 1)\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
-    "except KeyboardInterrupt:\n    os.wait()",
-    "starts_python": "import subprocess, sys\n"
-    "print(subprocess.run([sys.executable, '-c', 'import sys; print(sys.path)'], capture_output=True).stdout)",
-    "leaves_a_process": "import subprocess; subprocess.Popen(['sleep', '60']); print('left')",
-    "has_streams": "import sys\nfor s in (sys.stdout, sys.stderr):\n"
-    "    print(s.encoding, s.errors, s.line_buffering, s.write_through)\nsys.stdout.buffer.write(b'raw')",
-    "has_an_environment": "import os; print(sorted(os.environ.items()))",
-    "is_main": "import __main__, pickle\nclass C: pass\nprint(__main__.C is C, pickle.loads(pickle.dumps(C)) is C)",
-    "has_a_module_of_its_own": "import random; print(random.MINE)",
-    "closes_its_descriptors": "import os; os.closerange(0, 1000); os._exit(4)",
-    "is_interrupted_with_files_open": "import atexit, os\nos.closerange(3, 1000)\n"
-    "file = open('/tmp/mine', 'wb+', buffering=0)\natexit.register(lambda: print(os.pread(3, 9, 0)))\n"
-    "raise KeyboardInterrupt",
-    "has_a_hook_that_raises": "import atexit, sys\natexit.register(print, 'bye')\n"
-    "def hook(*a): raise RuntimeError('hook')\nsys.excepthook = hook\n1 / 0",
-    "exits_with_a_huge_number": "import sys; sys.exit(2**80)",
-    "looks_at_its_exception": "import atexit, sys; atexit.register(lambda: print(sys.last_value)); 1 / 0",
-    "starts_itself_again": "import os, sys\nif 'AGAIN' in os.environ: sys.exit('again')\n"
-    "os.environ['AGAIN'] = '1'\nos.execv(sys.executable, sys.orig_argv)",
-    # On a busy machine `ros2` meets Ctrl-C when its program has ended already.
-    "has_ended_when_ros2_gets_ctrl_c": "import os, signal, time\nparent, own = os.getppid(), os.getpid()\n"
-    "if not os.fork():\n    while os.getppid() == own:\n        time.sleep(0.01)\n"
-    "    os.kill(parent, signal.SIGINT)\n    os.kill(parent, signal.SIGCONT)\n    os._exit(0)\n"
-    "os.kill(parent, signal.SIGSTOP)\nos._exit(3)",
-}
+PROGRAMS = cases(__file__, "PROGRAMS")
 """The programs by name; what they show is that name."""
 UNEQUAL = re.compile(
     r"\[\d+\.\d+\]"  # the time of a log line

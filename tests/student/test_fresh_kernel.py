@@ -14,12 +14,12 @@ from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.student import fresh_kernel
 from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.student.progress import notebook_path
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 SETUP = "from autograder.notebook import check, start_ros\nfrom rclpy.node import Node\nstart_ros()"
-DEMO = "with spinning(Talker()):\n    print('a demonstration')"
 CHECK = "check('lab', Talker)"
 
 
@@ -38,41 +38,16 @@ def to_run(monkeypatch: pytest.MonkeyPatch, cells: list[str], own: list[int], *k
     return found
 
 
-TALKER = "class Talker(Node):\n    period = PERIOD"
+NEEDS = cases(__file__, "needs")
 
 
-@pytest.mark.parametrize(
-    ("cells", "own", "known", "expected"),
-    [
-        pytest.param([SETUP, TALKER, CHECK], [1, 2], (), [0], id="the set-up"),
-        pytest.param([SETUP, TALKER, CHECK], [1, 2], ("check", "Node", "PERIOD"), [], id="not again"),
-        pytest.param([SETUP, "PERIOD = 1", TALKER, DEMO, CHECK], [2, 4], (), [0, 1], id="no demonstration"),
-        pytest.param(
-            [SETUP, "def helper():\n    return Node", "def f():\n    return helper()", "check('l', f)"],
-            [2, 3],
-            ("check",),
-            [0, 1],
-            id="what is read in a function, and what that reads",
-        ),
-        pytest.param(
-            [SETUP, "x = 1", "def f():\n    x = 2\n    return x", "check('l', f)"],
-            [2, 3],
-            (),
-            [0],
-            id="no cell with the name of a local variable",
-        ),
-        pytest.param([SETUP, "PERIOD = ", TALKER, CHECK], [2, 3], (), [0], id="a cell that is not Python"),
-        pytest.param([SETUP, "%%writefile a.py\nx = (", "check('l', 'ws')"], [1, 2], (), [0], id="a magic"),
-    ],
-)
+@pytest.mark.parametrize("name", NEEDS)
 def test_a_check_needs_the_cells_that_define_what_it_reads(
-    monkeypatch: pytest.MonkeyPatch,
-    cells: list[str],
-    own: list[int],
-    known: tuple[str, ...],
-    expected: list[int],
+    monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    assert to_run(monkeypatch, cells, own, *known) == expected
+    case = NEEDS[name]
+    found = to_run(monkeypatch, [SETUP, *case["cells"]], [*case["own"]], *case["known"])
+    assert found == [*case["runs"]]
 
 
 def checks() -> Iterator[Any]:

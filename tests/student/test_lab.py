@@ -81,12 +81,21 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Started]:
     return found
 
 
-def test_the_session_has_a_free_domain_of_its_own_and_stays_on_this_host(
+def test_a_session_is_this_students_alone_and_has_what_a_student_needs(
     started: list[Started], tmp_path: Path
 ) -> None:
-    open_lab(tmp_path)
-    assert started[0].domain_is_held
-    assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    open_lab(tmp_path, ["--no-browser"])
+    (session,) = started
+    assert session.domain_is_held
+    assert session.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    off = {name.partition(":")[2] for name in session.disabled if name.startswith("@jupyter/nbgrader:")}
+    assert off == {"assignment-list", "course-list", "create-assignment", "formgrader", "menu"}
+    assert session.validate.Execute.timeout >= max(exercise.limit for exercise in exercises.unbroken())
+    # Cards name lines.
+    assert session.settings["@jupyterlab/notebook-extension:tracker"]["codeCellConfig"]["lineNumbers"]
+    assert (session.folder, session.argv) == (tmp_path, [*START, "--no-browser"])
+    assert session.environ[NOTEBOOKS_VARIABLE] == str(tmp_path)
+    assert session.environ[check_journal.VARIABLE] == str(tmp_path / check_journal.NAME)
 
 
 def test_validate_runs_the_configuration_only_of_a_known_class(
@@ -125,40 +134,6 @@ def test_what_the_user_chose_stays(
     assert started[0].environ["ROS_DOMAIN_ID"] == "17"
     assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
     assert "/my/settings" in started[0].config_path
-
-
-def test_a_student_has_validate_and_nothing_of_the_instructors(
-    started: list[Started], tmp_path: Path
-) -> None:
-    open_lab(tmp_path)
-    off = {name.partition(":")[2] for name in started[0].disabled if name.startswith("@jupyter/nbgrader:")}
-    assert off == {"assignment-list", "course-list", "create-assignment", "formgrader", "menu"}
-
-
-def test_validate_gives_a_cell_the_time_that_a_check_of_programs_may_take(
-    started: list[Started], tmp_path: Path
-) -> None:
-    open_lab(tmp_path)
-    assert started[0].validate.Execute.timeout >= max(exercise.limit for exercise in exercises.unbroken())
-
-
-def test_cells_have_line_numbers_since_cards_name_them(started: list[Started], tmp_path: Path) -> None:
-    open_lab(tmp_path)
-    assert started[0].settings["@jupyterlab/notebook-extension:tracker"]["codeCellConfig"]["lineNumbers"]
-
-
-def test_it_opens_the_folder_with_the_options_that_were_typed(started: list[Started], tmp_path: Path) -> None:
-    open_lab(tmp_path, ["--no-browser"])
-    assert started[0].folder == tmp_path
-    assert started[0].argv == [*START, "--no-browser"]
-
-
-def test_its_kernels_and_terminals_know_the_journal_beside_the_notebooks(
-    started: list[Started], tmp_path: Path
-) -> None:
-    open_lab(tmp_path)
-    assert started[0].environ[NOTEBOOKS_VARIABLE] == str(tmp_path)
-    assert started[0].environ[check_journal.VARIABLE] == str(tmp_path / check_journal.NAME)
 
 
 def test_a_request_that_was_never_answered_does_not_keep_the_server_alive() -> None:

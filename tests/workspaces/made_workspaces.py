@@ -10,31 +10,8 @@ from tests.cases import cases
 if TYPE_CHECKING:
     from pathlib import Path
 
-PACKAGE_XML = """<?xml version="1.0"?>
-<package format="3">
-  <name>{name}</name>
-  <version>0.0.0</version>
-  <description>For a test</description>
-  <maintainer email="student@example.com">student</maintainer>
-  <license>MIT</license>
-  <export>
-    <build_type>ament_python</build_type>
-  </export>
-</package>
-"""
-SETUP_PY = """from setuptools import setup
-
-setup(
-    name={name!r},
-    version='0.0.0',
-    packages=[{name!r}],
-    data_files=[
-        ('share/ament_index/resource_index/packages', ['resource/{name}']),
-        ('share/{name}', ['package.xml']),
-    ],
-    entry_points={{'console_scripts': ['hello = {name}.hello:main']}},
-)
-"""
+PACKAGE_XML = cases(__file__, "PACKAGE_XML")
+SETUP_PY = cases(__file__, "SETUP_PY")
 
 
 def python_package(src: Path, name: str = "tiny_pkg") -> Path:
@@ -54,14 +31,7 @@ def python_package(src: Path, name: str = "tiny_pkg") -> Path:
     return folder
 
 
-CMAKE = """cmake_minimum_required(VERSION 3.10)
-project(my_robot_interfaces)
-
-find_package(ament_cmake REQUIRED)
-find_package(rosidl_default_generators REQUIRED)
-rosidl_generate_interfaces(${PROJECT_NAME} "srv/AddTwoInts.srv")
-ament_package()
-"""
+CMAKE = cases(__file__, "CMAKE")
 INTERFACE_PACKAGE_XML = cases(__file__, "INTERFACE_PACKAGE_XML")
 DEFINITION = "int64 a\nint64 b\n---\nint64 sum\n"
 

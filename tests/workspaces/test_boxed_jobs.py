@@ -24,6 +24,7 @@ from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import BuildOutcome, ProgramJob
 from autograder.workspaces.program_plans import course_interfaces, plan_for
 from autograder.workspaces.program_preparation import Preparation
+from tests.cases import cases
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -92,18 +93,7 @@ def test_it_is_built_in_a_box_and_run_in_another(
     assert program.exit_code() == 0
 
 
-REMAP = """
-from pathlib import Path
-from ament_index_python.packages import get_package_share_directory
-from launch import LaunchDescription
-from launch.actions import IncludeLaunchDescription
-from launch.launch_description_sources import AnyLaunchDescriptionSource
-
-
-def generate_launch_description():
-    hello = Path(get_package_share_directory("tiny_pkg"), "launch", "hello.launch.xml")
-    return LaunchDescription([IncludeLaunchDescription(AnyLaunchDescriptionSource(str(hello)))])
-"""
+REMAP = cases(__file__, "REMAP")
 
 
 def test_a_launch_file_finds_the_files_of_its_package_beside_the_programs_that_are_lent_to_it(
@@ -158,37 +148,14 @@ def _library() -> str:
     return f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 
 
-def test_a_build_says_what_is_wrong_as_it_does_without_a_box(builds: GradedBuilds, workspace: Path) -> None:
-    build = made(builds, workspace, "\nsetup(")
-    assert (build.ok, build.trouble, build.package) == (False, "build", "tiny_pkg")
-    assert "SyntaxError" in build.line
-
-
 def test_a_build_reaches_nothing_of_the_grader_s(
     builds: GradedBuilds, workspace: Path, tmp_path: Path
 ) -> None:
     """It looks for other processes, the cache, the sources' owner, the network and a pipe that is not its own."""
     secret = tmp_path / "builds" / "secret"
     secret.touch()
-    build = made(
-        builds,
-        workspace,
-        f"""
-import os, pathlib, socket
-found = [name for name in os.listdir('/proc') if name.isdigit()]
-lines = [f'processes {{len(found) < 20}}', 'cache %s' % os.path.exists({str(secret)!r})]
-try:
-    socket.create_connection(('127.0.0.1', 22), 0.2)
-except OSError as error:
-    lines.append(f'network {{error.errno}}')
-try:
-    pathlib.Path(__file__).write_text('changed')
-except (OSError, NameError) as error:
-    lines.append('sources read-only')
-lines.append(f'interfaces {{[name for _, name in socket.if_nameindex()]}}')
-raise SystemExit('; '.join(lines))
-""",
-    )
+    looks = cases(__file__, "a_build_reaches_nothing_of_the_grader_s").replace("SECRET", str(secret))
+    build = made(builds, workspace, f"\n{looks}")
     assert not build.ok
     assert "processes True; cache False; network 111; sources read-only; interfaces ['lo']" in build.log
 
@@ -221,15 +188,6 @@ def test_a_build_that_fills_its_disk_fails(builds: GradedBuilds, workspace: Path
     )
     assert not build.ok
     assert "No space left" in build.log
-
-
-def test_an_install_folder_may_hold_nothing_but_files(builds: GradedBuilds, workspace: Path) -> None:
-    build = made(
-        builds,
-        workspace,
-        "\nimport os\npipe = '/home/student/ros2_ws/install/pipe'\nos.path.exists(pipe) or os.mkfifo(pipe)\n",
-    )
-    assert (build.ok, build.line) == (False, "'pipe' is neither a file nor a folder")
 
 
 def test_whoever_makes_interfaces_does_not_find_those_of_the_course(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,11 +11,6 @@ from autograder import course
 from autograder.authoring.notebook_execution import NotebookKind, execution_plan
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.running import execution_backends
-
-sys.path.insert(0, str(Path(__file__).parent))
-from graded import gradable, graders_judge, judged_answer
-
-from tests.cases import cases
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
@@ -26,9 +19,9 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 needs_boxes = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
-NOTEBOOKS = ("lab_1_1", "lab_1_2", "lab_1_3", "exercise_1_1")
 HANDED_OUT = "lab_1_1"
-ANSWERS = cases(__file__, "ANSWERS")
+NOTEBOOKS = ("lab_1_3", "exercise_1_1")
+"""Lab 1.2 is in the sample class, which is graded in boxes, too (grading/new_classes)."""
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +32,9 @@ def executions(
     asked = {(NotebookKind.MASTER, notebook) for notebook in asked_for(request, "notebook")}
     asked.add((NotebookKind.CHAPTER, HANDED_OUT))
     planned = [
-        one for one in execution_plan(course.root(), NOTEBOOKS) if (one.kind, one.task.notebook) in asked
+        one
+        for one in execution_plan(course.root(), (*NOTEBOOKS, HANDED_OUT))
+        if (one.kind, one.task.notebook) in asked
     ]
     tasks = [replace(one.task, boxed=True) for one in planned]
     done = execution_backends.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
@@ -63,10 +58,3 @@ def test_the_chapter_as_it_is_handed_out_gets_none(
     execution = executions[NotebookKind.CHAPTER, HANDED_OUT]
     assert execution.trouble == ""
     assert {verdict.score for verdict in execution.verdicts.values()} == {0}
-
-
-@pytest.mark.parametrize("name", ANSWERS)
-def test_answers_are_judged_as_in_a_terminal(name: str, tmp_path: Path) -> None:
-    (answer,) = (answer for answer in gradable() if answer.name == name)
-    with graders_judge(tmp_path) as judge:
-        assert answer.objection(judged_answer(judge, answer)) == ""

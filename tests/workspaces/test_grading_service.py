@@ -67,12 +67,9 @@ class FakeJobs:
         return PlainProgram(["/bin/sh", "-c", self.script], job.environment, job.sources)
 
 
-def _packed(*names: str, **links: str) -> bytes:
-    """A packed install folder with empty files, and links with their targets."""
-    files = [PackedEntry(name.encode(), Kind.FILE) for name in names]
-    return msgspec.msgpack.encode(
-        [*files, *(PackedEntry(a.encode(), Kind.LINK, b.encode()) for a, b in links.items())]
-    )
+def _packed(*names: str) -> bytes:
+    """A packed install folder with empty files."""
+    return msgspec.msgpack.encode([PackedEntry(name.encode(), Kind.FILE) for name in names])
 
 
 class FakeJudge:
@@ -364,17 +361,25 @@ def test_a_very_long_line_comes_in_pieces(judge: FakeJudge, jobs: FakeJobs) -> N
     assert said[-1] == "end"
 
 
+@pytest.fixture
+def colcon(
+    sockets: ServiceSockets, lab: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str]]:
+    """Types ``colcon build`` in a notebook's terminal: how it ends, and what it says."""
+
+    def build(*words: str) -> tuple[int, str]:
+        monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
+        monkeypatch.chdir(lab)
+        return students_builds.main(["build", *words]), capsys.readouterr().out
+
+    return build
+
+
 def test_a_notebook_s_build_comes_from_the_grader(
-    sockets: ServiceSockets,
-    jobs: FakeJobs,
-    lab: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, colcon: Callable[..., tuple[int, str]]
 ) -> None:
-    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
-    monkeypatch.chdir(lab)
-    assert students_builds.main(["build", "--packages-select", "my_robot_pkg"]) == 0
-    assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
+    code, said = colcon("--packages-select", "my_robot_pkg")
+    assert (code, "Finished <<< my_robot_pkg" in said) == (0, True)
     assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
     judge = FakeJudge(sockets)
     judge.check(lab)
@@ -382,30 +387,17 @@ def test_a_notebook_s_build_comes_from_the_grader(
     assert jobs.builds == [["my_robot_pkg"]]
 
 
-def test_a_notebook_s_failed_build_shows_what_colcon_said(
-    sockets: ServiceSockets,
-    jobs: FakeJobs,
-    lab: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+def test_a_notebook_s_build_that_fails_or_is_refused_says_why(
+    jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch, colcon: Callable[..., tuple[int, str]]
 ) -> None:
     jobs.built = BuildOutcome(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
-    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
-    monkeypatch.chdir(lab)
-    assert students_builds.main(["build"]) == 1
-    assert "SyntaxError" in capsys.readouterr().out
-    assert not (lab / "install").exists()
-
-
-def test_sources_that_no_build_takes_are_refused_with_the_reason(
-    sockets: ServiceSockets, lab: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+    code, said = colcon()
+    assert (code, "SyntaxError" in said, (lab / "install").exists()) == (1, True, False)
     (lab / "src" / "my_robot_pkg" / "large.bin").write_bytes(bytes(200))
     monkeypatch.setattr(packages, "MAX_BYTES", 100)
-    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
-    monkeypatch.chdir(lab)
-    assert students_builds.main(["build"]) == 1
-    assert "the limit for a file in a check: move it out of the workspace" in capsys.readouterr().out
+    code, said = colcon()
+    assert code == 1
+    assert "the limit for a file in a check: move it out of the workspace" in said
 
 
 def test_the_judge_may_be_gone_when_the_grader_has_trouble(

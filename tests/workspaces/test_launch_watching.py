@@ -18,18 +18,12 @@ from autograder.workspaces import launch_watching
 from autograder.workspaces.__main__ import print_line
 from autograder.workspaces.launch_watching import watched
 from autograder.workspaces.program_preparation import Prepared
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-RENAMES_ITSELF = """
-import ctypes, time
-words = open("/proc/self/stat").read().rpartition(")")[2].split()
-end = int(words[46])  # arg_end of proc(5), counted from the state
-for number in range(10**9):
-    ctypes.memmove(end - 20, b"%018d" % number, 18)
-    time.sleep(0.01)
-"""
+RENAMES_ITSELF = cases(__file__, "RENAMES_ITSELF")
 
 
 @pytest.mark.parametrize(("more", "most"), [("x" * 100_000, 2), ("x", 5)], ids=["long", "ever another"])

@@ -14,6 +14,7 @@ import pytest
 
 from autograder.standard_output import Collected, collect
 from autograder.workspaces.own_session import OwnSession
+from tests.cases import cases
 
 FOREVER = 1000.0
 
@@ -93,16 +94,7 @@ def test_it_may_end_by_itself_after_an_interrupt() -> None:
         assert program.exit_code() == 4
 
 
-KILLED = """
-import os, sys
-from autograder.workspaces.own_session import OwnSession
-program = OwnSession(["/bin/sh", "-c", sys.argv[1]], os.environ)
-said = b""
-while said.count(b"\\n") < 3:
-    said += program.read(1000.0)
-print(*map(int, said.split()), program.pid, flush=True)
-sys.stdin.read()
-"""
+KILLED = cases(__file__, "KILLED")
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM])

@@ -15,6 +15,7 @@ import pytest
 
 from autograder.workspaces.builds import build_cache
 from autograder.workspaces.builds.build_artifacts import BLOCK
+from tests.cases import cases
 
 
 def fill(key: str, size: int = 10) -> None:
@@ -52,18 +53,7 @@ def test_what_a_killed_builder_left_is_removed(empty_cache: Path) -> None:
 
 def test_the_build_of_a_killed_builder_is_ended_before_another_begins(empty_cache: Path) -> None:
     """As where JupyterLab restarts a kernel in a check: colcon has a session of its own, and would go on."""
-    program = """
-import os, signal
-from autograder.workspaces.builds import build_cache as cache
-from autograder.workspaces.own_session import OwnSession
-# The session's first process is gone, and one that it has started goes on writing.
-below = "while true; do mkdir -p half; echo x > half/$$; done"
-command = ["/bin/sh", "-c", f"({below}) & echo $!; wait"]
-with cache.entry("a", cache.root()) as entry:
-    colcon = OwnSession(command, os.environ, entry.folder, (entry.lock,))
-    print(int(colcon.read(60.0)), flush=True)
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
+    program = cases(__file__, "the_build_of_a_killed_builder_is_ended_before_another_begins")
     killed = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, check=False)
     assert killed.returncode == -signal.SIGKILL
     writing = int(killed.stdout)
@@ -147,15 +137,6 @@ def test_an_entry_that_somebody_holds_is_not_removed(empty_cache: Path) -> None:
     with build_cache.entry("a", build_cache.root()):
         os.utime(empty_cache / "a" / "complete", (0, 0))
         assert build_cache.make_room(empty_cache, limit=0) == []
-
-
-def test_empty_files_and_folders_count(empty_cache: Path) -> None:
-    with build_cache.entry("a", build_cache.root()) as entry:
-        for number in range(100):
-            (entry.folder / f"{number}").touch()
-        entry.finish()
-    os.utime(empty_cache / "a" / "complete", (0, 0))
-    assert build_cache.make_room(empty_cache, limit=100 * BLOCK) == ["a"]
 
 
 def test_what_another_worker_removes_meanwhile_does_not_count(

@@ -177,14 +177,7 @@ def test_of_interfaces_all_is_built_that_a_node_needs(tmp_path: Path) -> None:
     made = build(tmp_path)
     assert made.ok, made.log
     # A topic needs more than a service: Fast DDS describes its type to others.
-    node = """
-import rclpy, note_interfaces.msg, note_interfaces.srv
-rclpy.init()
-node = rclpy.create_node("node")
-node.create_publisher(note_interfaces.msg.Note, "notes", 1)
-node.create_subscription(note_interfaces.msg.Note, "notes", print, 1)
-node.create_service(note_interfaces.srv.AddTwoInts, "add", print)
-"""
+    node = cases(__file__, "of_interfaces_all_is_built_that_a_node_needs")
     subprocess.run([sys.executable, "-c", node], env=with_prefixes(os.environ, made.prefixes), check=True)
 
 
