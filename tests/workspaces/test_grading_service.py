@@ -161,16 +161,12 @@ def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(judge: FakeJ
 
 
 def test_a_failed_build_is_told_and_not_kept(judge: FakeJudge, jobs: FakeJobs) -> None:
-    good, jobs.built = (
-        jobs.built,
-        BuildOutcome(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
-    )
+    said = b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'
+    good, jobs.built = jobs.built, BuildOutcome(1, said, jobs.built.archive)
     told = reports(judge.run())[-1]
-    assert (told["trouble"], told["package"], told["line"]) == (
-        "build",
-        "my_robot_pkg",
-        "x/setup.py:3: SyntaxError: no",
-    )
+    found = (told["trouble"], told["package"], told["line"])
+    assert found == ("build", "my_robot_pkg", "x/setup.py:3: SyntaxError: no")
+    assert not jobs.commands, "what it has left is not taken"
     jobs.built = good
     assert reports(judge.run(2))[-1]["built"]
 
@@ -194,12 +190,6 @@ def test_what_fails_and_is_only_depended_on_takes_nothing_away(
     judge.check(lab)
     assert reports(judge.run())[-1]["built"]
     assert jobs.builds == [["my_robot_interfaces"], ["my_robot_pkg"]]
-
-
-def test_what_a_failed_build_has_left_is_not_taken(judge: FakeJudge, jobs: FakeJobs) -> None:
-    jobs.built = BuildOutcome(1, b"error: no\n", jobs.built.archive)
-    assert reports(judge.run())[-1]["trouble"] == "build"
-    assert not jobs.commands
 
 
 def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:

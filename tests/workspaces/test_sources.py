@@ -36,11 +36,6 @@ def tree_of(folder: Path, largest: int = 1_000) -> SourceTree:
     return SourceTree(tuple(read_sources(folder, ".", largest)))
 
 
-def unreadable(folder: Path) -> None:
-    (folder / "secret.py").write_text("x")
-    (folder / "secret.py").chmod(0)
-
-
 def listening(folder: Path) -> None:
     here = os.open(folder, os.O_PATH)
     with socket.socket(socket.AF_UNIX) as listener:
@@ -139,7 +134,8 @@ def test_what_changes_after_it_was_read_is_in_neither(folder: Path, tmp_path: Pa
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
 def test_what_may_not_be_read_is_in_neither(folder: Path) -> None:
     plain = tree_of(folder)
-    unreadable(folder)
+    (folder / "secret.py").write_text("x")
+    (folder / "secret.py").chmod(0)
     assert tree_of(folder) == plain
 
 

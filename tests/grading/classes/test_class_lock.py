@@ -37,20 +37,10 @@ def is_running(process: subprocess.Popen[str]) -> bool:
     return process.poll() is None
 
 
-def command(tiny: TinyClass, *words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-W", "ignore", "-m", *words],
-        cwd=tiny.path,
-        env=os.environ | {"HOME": str(tiny.path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_the_command_says_who_is_at_work_and_since_when(tiny: TinyClass) -> None:
     with ClassDirectory(tiny.path).lock():
-        second = command(tiny, "autograder", "grade", str(tiny.path))
+        words = [sys.executable, "-W", "ignore", "-m", "autograder", "grade", str(tiny.path)]
+        second = subprocess.run(words, capture_output=True, text=True, check=False)
     assert second.returncode == 2
     assert re.search(rf"Another run is grading {re.escape(str(tiny.path))} \({WHO}\)", second.stderr)
     assert len(second.stderr.splitlines()) == 1

@@ -40,6 +40,7 @@ def test_its_gradebook_has_the_version_that_nbgraders_own_would_have(tiny: TinyC
 
 
 def test_only_notebooks_with_a_check_become_assignments(course: Path, tmp_path: Path) -> None:
+    (tmp_path / "class").mkdir()  # an empty folder will do
     made = new_class(tmp_path / "class", course)
     assert made.assignments == ("lab_1_2",)
     assert "./course grade" in made.summary()[-1]
@@ -69,11 +70,6 @@ def test_links_between_notebooks_lead_to_those_of_the_class_and_to_no_others(tmp
     ]
     assert notebooks[0].resolve() in [link.resolve() for link in links]
     assert [link for link in links if not link.exists()] == []
-
-
-def test_an_empty_folder_will_do(course: Path, tmp_path: Path) -> None:
-    (tmp_path / "class").mkdir()
-    new_class(tmp_path / "class", course)
 
 
 def test_nothing_that_is_there_is_touched(course: Path, tmp_path: Path) -> None:

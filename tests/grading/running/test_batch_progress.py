@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import io
-import threading
 
 import pytest
 from rich.console import Console
@@ -62,17 +61,6 @@ def test_a_notebook_gets_plain_lines_too(monkeypatch: pytest.MonkeyPatch) -> Non
         progress.started("ada")
         progress.finished("ada", failed=False)
     assert printed == ["graded 1 of 1: ada"]
-
-
-def test_threads_may_start_while_another_one_ends() -> None:
-    with BatchProgress(Console(file=io.StringIO()), 400) as progress:
-        threads = [threading.Thread(target=progress.started, args=[str(n)]) for n in range(400)]
-        for thread in threads:
-            thread.start()
-        for number, thread in enumerate(threads):
-            thread.join()
-            progress.finished(str(number), failed=False)
-        assert not progress._running
 
 
 class Clock:

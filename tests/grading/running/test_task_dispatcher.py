@@ -130,14 +130,6 @@ def test_a_task_that_costs_worker_after_worker_is_given_up(tasks: list[Task]) ->
     assert sum(task_in(give).seed == poison for give in link.given) == ATTEMPTS
 
 
-def test_what_a_worker_could_not_run_is_run_by_another_one(tasks: list[Task]) -> None:
-    link = FakeLink(joined("a"), Asked())
-    link.answer = lambda give, task: (
-        Failed(give.number, "no room") if give.number == 1 else honest(give, task)
-    )
-    assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
-
-
 BAD: dict[str, tuple[Callable[[Give, Task], News | None], str]] = {
     "full": (lambda give, _: Failed(give.number, "no room"), ""),
     "sick": (troubled, "the worker failed on 3 notebooks in a row: no space left."),
