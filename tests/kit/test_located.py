@@ -6,8 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.oracle.naming.deltas import Differences, Meaning, MutantClass, Mutants
-from autograder.kit.oracle.naming.located import likely_sentence, located
+from autograder.kit.oracle.naming.located import located
 from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 from autograder.kit.oracle.same_as_solution import SameAsSolution
 
@@ -69,21 +68,6 @@ def test_of_several_sentences_the_likely_one_is_quoted() -> None:
     assert "The task says" not in told(seen)
     assert "stand still where it is near" in told(seen, "stand still where it is near")
     assert told(DUE) == ""
-
-
-def test_the_likely_sentence_is_that_of_the_mutants_that_differ_in_the_same_steps() -> None:
-    meanings = [Meaning("condition", "never", n, n, quote) for n, quote in enumerate(LAW)]
-    rows: list[dict[str, dict[int, Any]]] = [
-        {"/said": {1: [["near"]]}},
-        {"/moved": {1: [[0.1, 0.0]], 3: [[0.1, 0.0]]}},
-        {"/moved": {2: [[0.5, 0.0]]}},
-    ]
-    classes = [MutantClass([n], {"drawing 0": one}) for n, one in enumerate(rows)]
-    mutants = Mutants("", meanings, classes)
-    assert likely_sentence(mutants, Differences("drawing 0", {"/moved": {2: [[0.9, 0.0]]}}, True)) == (
-        "stand still where it is near"
-    )
-    assert likely_sentence(mutants, Differences("drawing 0", {"/moved": {9: [[0.9, 0.0]]}}, True)) == ""
 
 
 def test_an_input_that_came_before_the_judge_listened_is_named() -> None:

@@ -45,6 +45,9 @@ _MATCHING_QOS = {
         "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL), from rclpy.qos, instead of the queue depth."
     ),
 }
+_VOLATILE = (
+    "The other node is volatile: it stores no message. Leave DurabilityPolicy.TRANSIENT_LOCAL out of yours."
+)
 _ALL_STARTED = "Does your launch file start every program of the task? One of them may use the missing name."
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 
@@ -80,10 +83,11 @@ def endpoint_name(role: str) -> Mistake:
     )
 
     def recognize(evidence: Evidence) -> Advice | None:
-        advice = usual.recognize(evidence)
-        if advice is None or not processes(evidence.main):
+        advice, names = usual.recognize(evidence), strange_and_missing(evidence)
+        if advice is None or names is None or not processes(evidence.main):
             return advice
-        return replace(advice, next_step=f"{_ALL_STARTED} {advice.next_step}")
+        text = f"No program of yours {verb} {names[1]}, as the task asks; one {verb} {names[0]}."
+        return replace(advice, text=text, next_step=f"{_ALL_STARTED} {advice.next_step}")
 
     return replace(usual, recognize=recognize)
 
@@ -109,10 +113,11 @@ def qos_mismatch(role: str) -> Mistake:
     def recognize(evidence: Evidence) -> Advice | None:
         if (event := mismatch(evidence)) is None:
             return None
+        qos = event.data.get("qos", Qos.DEFAULT)
         return Advice(
             f"Your node and the other node both use {event.name}, but their QoS settings for {event.data['policy']} "
             "are not compatible, so no message arrives.",
-            _MATCHING_QOS[event.data.get("qos", Qos.DEFAULT)],
+            _MATCHING_QOS[qos] if event.data["policy"] != "durability" or qos == Qos.LATCHED else _VOLATILE,
         )
 
     return Mistake("qos_mismatch", recognize, certain=True)

@@ -128,13 +128,13 @@ EXERCISE = Mission(
             "no_call",
             lambda now: not now.part.of("request") and not now.part.traceback,
             "Your node never called the service lamp, although the robot came near the door.",
-            "Only x counts: compare it with the door, and call self.lamp.call_async(SetBool.Request(data=...)).",
+            "Only x counts: compare it with the door's, and call self.lamp.call_async(SetBool.Request(data=...)).",
         ),
         (
             "too_many_calls",
             lambda now: (count := len(now.part.of("request"))) > len(due(now)) and count,
             "Your node called the service lamp {} times, and the lamp had to change less often.",
-            "Compare what the lamp has to be, on both sides of the door, with self.is_on; call only if they differ.",
+            "Compare what the lamp has to be, on both sides, with self.is_on; only if they differ, store it, and call.",
             {"certain": True},
         ),
         (

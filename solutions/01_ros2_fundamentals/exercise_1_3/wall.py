@@ -63,7 +63,7 @@ EXERCISE = Mission(
             "cancel_too_early",
             too_early,
             "Your node asked to cancel when the wall ahead was still {} m away.",
-            "ranges[0] is straight ahead, and the other numbers are not: compare it with 1.5.",
+            "ranges[0] is straight ahead, and the other numbers are not: cancel if it is less than 1.5.",
         ),
         (
             "cancel_too_late",

@@ -19,7 +19,7 @@ from autograder.kit.model import UNKNOWN, Advice, Mistake
 from autograder.kit.oracle.naming import mutant_words
 from autograder.kit.oracle.naming.deltas import differences, meanings_of, rows
 from autograder.kit.oracle.naming.effects import effect
-from autograder.kit.oracle.naming.located import first_apart, likely_sentence, located
+from autograder.kit.oracle.naming.located import first_apart, located
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.oracle.standing_clock import KEY, on_another_clock
 from autograder.kit.recipes.own_scenario import ENDPOINTS, OwnScenario
@@ -239,7 +239,7 @@ class Drawn(OwnScenario):
         if mutants is not None:
             apart = differences(self._outputs, mine, due)
             quotes = {one.quote for one in meanings_of(mutants, apart, self._outputs[0].tolerance)} - {""}
-            near = quotes.pop() if len(quotes) == 1 else likely_sentence(mutants, apart)
+            near = quotes.pop() if len(quotes) == 1 else ""
         told = located(self._outputs, mine, due, self.law, near)
         is_right_there = any(
             run.name != mine.name and self._agree(run, practice)

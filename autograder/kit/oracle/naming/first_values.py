@@ -132,22 +132,27 @@ def _too_often(came: Sequence[Any], asked: Sequence[Any], said: Sequence[Event])
     return filled_in(_WORDS["too_often"], times=len(came))
 
 
+def _runs_since(
+    moment: float, inputs: Sequence[Event], seconds: Sequence[float]
+) -> Iterator[tuple[Event, str]]:
+    """Yield the newest inputs of which a time that the task names is over at a moment, with the seconds since then."""
+    for event in reversed(inputs[-LAST:]):
+        passed = moment - event.moment
+        if any(-EARLY <= passed - one <= LATE for one in seconds):
+            yield event, f"{passed:.2g}"
+
+
 def _set_going(said: Sequence[Event], is_silent: bool, run: Part, seconds: Sequence[float]) -> Advice | None:
     """Return after which input a message came that is not due, if the node's time runs since then."""
-    inputs = [event for event in inputs_of(run) if event.moment < said[-1].moment]
-    for event, newer in reversed([*pairwise(inputs)][-LAST:]):
-        passed = said[-1].moment - event.moment
-        if any(-EARLY <= passed - one <= LATE for one in seconds):
-            return filled_in(
-                _WORDS["not_set_back"],
-                seconds=f"{passed:.2g}",
-                given=input_in_words(event),
-                newer=input_in_words(newer),
-            )
+    moment = said[-1].moment
+    inputs = [event for event in inputs_of(run) if event.moment < moment]
+    for event, passed in _runs_since(moment, inputs[:-1], seconds):
+        newer = input_in_words(inputs[inputs.index(event) + 1])
+        return filled_in(_WORDS["not_set_back"], seconds=passed, given=input_in_words(event), newer=newer)
     if not is_silent or not inputs:
         return None
-    passed = said[-1].moment - inputs[-1].moment
-    return filled_in(_WORDS["by_a_timer"], seconds=f"{passed:.2g}", given=input_in_words(inputs[-1]))
+    passed = f"{moment - inputs[-1].moment:.2g}"
+    return filled_in(_WORDS["by_a_timer"], seconds=passed, given=input_in_words(inputs[-1]))
 
 
 def _too_few(
@@ -171,18 +176,14 @@ def _too_late(
     """Return after which input a message comes that is due once and earlier, if the node's time runs since then."""
     due = [one for values in theirs.values() for one in values]
     missing = next((one for one in asked if one not in came and due.count(one) == 1), None)
-    said = next(
-        (event for event in run.of("message", output.name) if output.values([event]) == [missing]), None
-    )
-    if missing is None or said is None:
+    if missing is None:
         return None
-    inputs = [event for event in inputs_of(run) if event.moment < said.moment]
-    for event in inputs[:0:-1][:LAST]:
-        passed = said.moment - event.moment
-        if any(-EARLY <= passed - one <= LATE for one in seconds):
-            return filled_in(
-                _WORDS["set_back"], said=missing[0], seconds=f"{passed:.2g}", given=input_in_words(event)
-            )
+    for said in run.of("message", output.name):
+        inputs = [event for event in inputs_of(run) if event.moment < said.moment]
+        if output.values([said]) == [missing]:
+            for event, passed in _runs_since(said.moment, inputs[1:], seconds):
+                given = input_in_words(event)
+                return filled_in(_WORDS["set_back"], said=missing[0], seconds=passed, given=given)
     return None
 
 
@@ -210,15 +211,15 @@ def _too_early(
     if not asked or extra is None or len(extra) != 1 or not isinstance(extra[0], str):
         return None
     numbers = [
-        (list(mine[step]).count(extra), list(theirs[step]).count(extra)) for step in theirs if step in mine
+        (list(mine[step]).count(extra), list(due).count(extra))
+        for step, due in theirs.items()
+        if step in mine
     ]
-    often, due = (sum(column) for column in zip(*numbers, strict=True))
-    is_all_there = all(one in came for one in asked) and all(there >= many for there, many in numbers)
-    if not (due and is_all_there):
+    times, due_times = (counted(sum(column), "time") for column in zip(*numbers, strict=True))
+    is_due_elsewhere = any(due for _, due in numbers) and all(often >= due for often, due in numbers)
+    if not is_due_elsewhere or any(one not in came for one in asked):
         return None
-    return filled_in(
-        _WORDS["too_early"], said=extra[0], times=counted(often, "time"), due=counted(due, "time")
-    )
+    return filled_in(_WORDS["too_early"], said=extra[0], times=times, due=due_times)
 
 
 def _late(output: Output, run: Part, came: Sequence[Any]) -> Advice | None:

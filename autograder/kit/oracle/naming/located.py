@@ -18,11 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from autograder.kit.evidence import Part
-    from autograder.kit.oracle.naming.deltas import Differences, Mutants
     from autograder.kit.oracle.outputs import Output
 
-ALIKE = 0.5
-"""The share of common steps from which on mutants at the place of a sentence are like the subject."""
 ITEM, LONG = "; ", 60
 """What divides the items of a list in words, and the number of letters from which on a card leaves common ones out."""
 _SECONDS = re2.compile(r"\b(\d+(?:\.\d+)?) ?s(?:econds?)?\b")
@@ -39,7 +36,7 @@ def located(
         run: The run of the subject.
         due: The run of the solution in the same drawing.
         law: The sentences of the task, each with the names of the criteria that judge it.
-        near: The sentence that is most likely about it; empty if none is.
+        near: The sentence of the mutants that do the same; empty if there are none.
     """
     failed = _failed(outputs, run, due)
     seconds = [float(one) for sentence in law for one in _SECONDS.findall(sentence)]
@@ -85,16 +82,12 @@ def _about(judged: Sequence[str], texts: Collection[str]) -> str:
 
 
 def _texts_apart(output: Output, run: Part, due: Part) -> list[str]:
-    """Return the texts that are too much or missing in the first step that differs."""
+    """Return the texts that are too much in the first step that differs, or else those that are missing."""
     mine, theirs = rows(output, run), rows(output, due)
-    step = next(iter(steps_apart(mine, theirs, output.tolerance)), None)
-    if step is None or output.kind is not Kind.STEPS:
-        return []
-    came, asked = (
-        [one[0] for one in values[step] if isinstance(one, list) and isinstance(one[0], str)]
-        for values in (mine, theirs)
-    )
-    return [one for one in came if one not in asked] or [one for one in asked if one not in came]
+    step = next(iter(steps_apart(mine, theirs, output.tolerance)), 0)
+    came, asked = (values.get(step, ()) for values in (mine, theirs))
+    rest = [one for one in came if one not in asked] or [one for one in asked if one not in came]
+    return [one[0] for one in rest if isinstance(one, list) and isinstance(one[0], str)]
 
 
 def _where_apart(output: Output, run: Part, due: Part) -> str:
@@ -115,20 +108,3 @@ def _from(words: str, others: str) -> str:
 
 def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def likely_sentence(mutants: Mutants, apart: Differences) -> str:
-    """Return the sentence of the task whose mutants differ in the same steps as the subject; empty if several do."""
-    mine = {(name, step) for name, values in apart.seen.items() for step in values}
-    best: dict[str, float] = {}
-    for one in mutants.classes:
-        theirs = {
-            (name, step) for name, values in one.parts.get(apart.drawing, {}).items() for step in values
-        }
-        share = len(mine & theirs) / max(1, len(mine | theirs))
-        for number in one.meanings:
-            quote = mutants.meanings[number].quote
-            best[quote] = max(best.get(quote, 0.0), share)
-    highest = max(best.values(), default=0.0)
-    first = [quote for quote, share in best.items() if share == highest]
-    return first[0] if len(first) == 1 and highest >= ALIKE else ""
