@@ -9,9 +9,11 @@ import pytest
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.mission import Mission
+from autograder.kit.mistakes.common_mistakes import endpoint_name
 from autograder.kit.oracle.action_server import SendsGoals
 from autograder.kit.oracle.goals_seen import GoalsSeen
 from autograder.kit.oracle.same_as_solution import SameAsSolution
+from autograder.kit.output.launched_processes import Process, process_line
 from autograder.kit.output.workspace_reports import WorkspaceReport, workspace_report_line
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.own_scenario import OwnScenario
@@ -134,6 +136,30 @@ def test_a_publisher_that_says_nothing(
     messages: Sequence[Event], recorded: Sequence[Event], key: str
 ) -> None:
     assert first("publisher", *messages, recorded=recorded) == key
+
+
+@pytest.mark.parametrize(
+    ("is_launched", "text", "begins"),
+    [
+        (False, "Your node publishes on /b, but the task asks for the topic /a.", "Compare the names"),
+        (
+            True,
+            "No program of yours publishes on /a, as the task asks; one publishes on /b.",
+            "Does your launch file",
+        ),
+    ],
+)
+def test_of_a_launch_a_missing_name_may_be_that_of_a_program_that_was_not_started(
+    *, is_launched: bool, text: str, begins: str
+) -> None:
+    reference = Reference("a.b", {"publisher": NAMES["publisher"]}, [Part("met", {}, [])])
+    graph = Event(0.1, "interface", "graph", {"nodes": ["/one"], "publisher": {"/b": "std_msgs/msg/String"}})
+    started = Event(0.0, "output", "terminal", {"text": process_line(Process(2, 1, ("python3", "b.py")))})
+    part = Part("met", {}, [graph, *[started] * is_launched])
+    advice = endpoint_name("publisher").recognize(Evidence([part], reference))
+    assert advice is not None
+    assert advice.text == text
+    assert advice.next_step.startswith(begins)
 
 
 @pytest.mark.parametrize("role", ["service", "action_server"])
