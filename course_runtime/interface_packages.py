@@ -7,6 +7,7 @@ lab, and nothing that they receive may be the answer.
 from __future__ import annotations
 
 import shutil
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -67,6 +68,11 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
     )
 
 
+def missing_packages(root: Path) -> list[Path]:
+    """Return the folders of the packages that this Python cannot import: nobody has built or sourced them."""
+    return [package for package in interface_packages(root) if find_spec(package.name) is None]
+
+
 def only_python_needs(package: Path) -> bool:
     """Return True if interfaces for Python are enough, because a package has no message that others use in C++."""
     return not any(package.glob("msg/*.msg"))
@@ -90,7 +96,7 @@ def build_command(
     """
     sources = scratch / "interfaces"
     for package in packages:
-        _make_package(package, sources / package.name)
+        write_package(package, sources / package.name)
     # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.
     generated = ONLY_PYTHON if light else ("-G", "Ninja")
     cmake = [*generated, f"-DPython3_EXECUTABLE={python}", "-DCMAKE_BUILD_TYPE=Release"]
@@ -101,11 +107,7 @@ def build_command(
     return command
 
 
-def _definitions(folder: Path) -> list[Path]:
-    return sorted(file for file in folder.glob("*/*") if file.suffix in _DEFINITIONS)
-
-
-def _make_package(folder: Path, place: Path) -> None:
+def write_package(folder: Path, place: Path) -> None:
     """Write a package: a copy of the folder's definitions, and the files that colcon and CMake need."""
     shutil.copytree(folder, place)
     names = [file.relative_to(folder).as_posix() for file in _definitions(folder)]
@@ -116,3 +118,7 @@ def _make_package(folder: Path, place: Path) -> None:
     definitions = " ".join(f'"{name}"' for name in names)
     cmake_lists = _CMAKE_LISTS.format(name=folder.name, definitions=definitions)
     (place / "CMakeLists.txt").write_text(cmake_lists, encoding="utf-8")
+
+
+def _definitions(folder: Path) -> list[Path]:
+    return sorted(file for file in folder.glob("*/*") if file.suffix in _DEFINITIONS)

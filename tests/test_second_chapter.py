@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 import pytest
 
+from autograder import course
 from autograder.authoring.new_exercise import new_exercise
 from autograder.boxes.sandbox import why_impossible
-from autograder.student.handout import hand_out
-from autograder.workspaces.builds.install_folder import with_prefixes
-from course_runtime.interface_packages import build_command, interface_packages
+from autograder.student.handout import hand_out, readme
+from course_runtime.interface_packages import interface_packages
 from tests.copies import copied
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
 CHAPTER = Path(__file__).parent / "second_chapter/solutions/02_power"
 EXERCISE, FIRST = "lab_2_1.dimmer", "lab_1_9.battery"
@@ -43,20 +43,12 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def environ(root: Path) -> Mapping[str, str]:
-    """The author's terminal: the interface is built, and the workspace sourced."""
-    python, prefix = Path(sys.executable), root / "prefix"
-    packages = interface_packages(root)
-    assert [package.name for package in packages] == ["power_interfaces"]
-    command = build_command(python.with_name("colcon"), python, packages, prefix, root / "scratch")
-    built = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert built.returncode == 0, built.stdout + built.stderr
-    return with_prefixes(os.environ | {"AUTOGRADER_COURSE": str(root)}, [prefix])
+def autograder(root: Path) -> Callable[..., Run]:
+    """Runs a command of the autograder in that course, which has its two reference outputs and its notebooks.
 
-
-@pytest.fixture(scope="module")
-def autograder(environ: Mapping[str, str], root: Path) -> Callable[..., Run]:
-    """Runs a command of the autograder in that course, which has its two reference outputs and its notebooks."""
+    Nobody has built the interface: the first command does it.
+    """
+    environ = os.environ | {"AUTOGRADER_COURSE": str(root)}
 
     def run(*words: str | Path) -> Run:
         command = [sys.executable, "-m", "autograder", *map(str, words)]
@@ -99,7 +91,6 @@ def test_a_class_is_graded_in_boxes(autograder: Callable[..., Run], root: Path, 
     made = autograder("new-class", folder, "--assignment", "lab_2_1")
     assert made.returncode == 0, made.stdout + made.stderr
     released = nbformat.read(folder / "release/lab_2_1/lab_2_1.ipynb", as_version=4)
-    (folder / "class.toml").write_text(f'overlays = ["{root / "prefix"}"]\n')
     submit(folder, "unsolved", released)
     solution = (
         (root / "solutions/02_power/lab_2_1/lab.md").read_text().split("[solution]\n")[1].split("```")[0]
@@ -132,3 +123,4 @@ def test_what_students_are_handed_has_its_interface(root: Path, tmp_path: Path) 
     assert not (given / "lab_2_1/lab.md").exists()
     assert interface_packages(tmp_path / "handed") == (given / "interfaces/power_interfaces",)
     assert (given / "interfaces/power_interfaces/srv/SetLevel.srv").is_file()
+    assert "[ros,notebooks,interfaces]" in readme(course.chapters(root), of_a_clone=False)

@@ -154,6 +154,24 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     assert "battery" in (mine / "site" / "index.html").read_text()
 
 
+@pytest.mark.slow
+@pytest.mark.ros
+def test_an_interface_of_ones_own_builds_itself(installed: Path, wheel: Path) -> None:
+    """A chapter has a definition and no package.xml; the wheels of ROS name folders of another machine."""
+    autograder, mine = installed / "venv" / "bin" / "autograder", installed / "course-with-a-type"
+    chapter = copied(ROOT / "tests/second_chapter/solutions/02_power", mine / "solutions" / "02_power")
+    program = chapter / "lab_2_1/dimmer.answers/right/usual.py"
+    add(installed, wheel, "ros")
+    said = run(autograder, "record", "lab_2_1.dimmer", cwd=mine, code=2)
+    assert "power_interfaces cannot be built" in said
+    assert "pip install 'ros2-on-the-wire[interfaces]'" in said
+    add(installed, wheel, "interfaces")
+    assert "autograder: building power_interfaces, once\n" in run(autograder, "record", cwd=mine)
+    judged = run(autograder, "check", "lab_2_1.dimmer", "--json", "--", "python3", program, cwd=mine)
+    assert printed_json(judged)["score"] == 10
+    assert "building" not in judged
+
+
 def test_the_wheel_has_each_file_of_the_package(wheel: Path) -> None:
     """A folder with a dot in its name was missing, so ``autograder lab`` had no course page."""
     packages = (ROOT / "autograder", ROOT / "course_runtime")

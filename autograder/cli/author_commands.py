@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from autograder.cli.class_options import jobs_option
-from autograder.cli.command_results import NO, fail, failing_with, need_ros
+from autograder.cli.command_results import NO, fail, failing_with, need_ros, use_own_interfaces
 from autograder.command_name import COMMAND
 
 
@@ -33,6 +33,7 @@ def execute(notebooks: tuple[str, ...], jobs: int | None) -> None:
     from autograder.masters.master_files import MasterError
 
     need_ros()
+    use_own_interfaces()
     with failing_with(NothingToExecuteError, MasterError):
         sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs))
 
@@ -55,6 +56,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     from autograder.exercises import BrokenExercise, UnknownExercise, all_ids, get
 
     need_ros()
+    use_own_interfaces()
     with failing_with(BrokenExercise, UnknownExercise, reference_files.CannotRecord):
         wanted = [get(exercise_id) for exercise_id in exercises or all_ids()]
         changed = reference_files.record(wanted, only_check=only_check, tell=click.echo)
@@ -125,6 +127,7 @@ def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any)
     from autograder.masters.master_files import MasterError
 
     need_ros()
+    use_own_interfaces()
     of_exercises = (exercises.BrokenExercise, exercises.UnknownExercise, exercise_trial.NothingToTry)
     with failing_with(*of_exercises, BadTable, MasterError, reference_files.CannotRecord):
         wanted = exercises.get(exercise)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -50,6 +51,28 @@ def need_ros() -> None:
     """
     if find_spec("rclpy") is None:
         raise ModuleNotFoundError("No module named 'rclpy'", name="rclpy")
+
+
+def use_own_interfaces() -> None:
+    """Start this command again with the course's interface packages, if this Python cannot import them.
+
+    It takes a new process, because the search path of libraries is read at its start.
+    """
+    from autograder import course
+    from course_runtime.own_interfaces import CannotBuildInterfaces, built_interfaces
+
+    try:
+        with failing_with(CannotBuildInterfaces):
+            prefixes = built_interfaces(course.root())
+    except course.NoCourse:
+        return
+    if prefixes:
+        from autograder.workspaces.builds.install_folder import with_prefixes
+        from course_runtime.python_child import INTERPRETER
+
+        environment = with_prefixes(os.environ, prefixes)
+        if environment != os.environ:  # else the new process would not find them, either
+            os.execve(INTERPRETER, [INTERPRETER, *sys.orig_argv[1:]], environment)
 
 
 @contextmanager

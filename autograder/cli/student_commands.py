@@ -18,6 +18,7 @@ from autograder.cli.command_results import (
     failing_with,
     need_ros,
     print_json,
+    use_own_interfaces,
 )
 from autograder.command_name import COMMAND
 
@@ -75,6 +76,7 @@ def check(
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
     need_ros()
+    use_own_interfaces()
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
@@ -167,6 +169,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
     from autograder.standard_output import styled
     from autograder.student.lab import NoSuchFolderError, open_lab
 
+    use_own_interfaces()
     # JupyterLab colors its log itself.
     with failing_with(NoSuchFolderError, NoFreeDomainError, ValueError), redirect_stderr(styled(sys.stderr)):
         open_lab(folder or course.root() / course.CHAPTERS, arguments)

@@ -122,8 +122,7 @@ def hand_out(
     if not chapters:
         raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
     files = dict(_files(root, chapters, with_solutions=with_solutions))
-    title = " · ".join(one.title for one in chapters)
-    files["README.md"] = readme(title, of_a_clone="course" in files).encode()
+    files["README.md"] = readme(chapters, of_a_clone="course" in files).encode()
     write = _pack if as_zip else _copy
     write(place, files)
     sizes = [
@@ -132,15 +131,17 @@ def hand_out(
     return HandOut(place, len(files), sum(sizes))
 
 
-def readme(title: str, *, of_a_clone: bool) -> str:
+def readme(chapters: Sequence[course.Chapter], *, of_a_clone: bool) -> str:
     """Return the README of a hand-out.
 
     Args:
-        title: The titles of the chapters.
+        chapters: The chapters that are handed out.
         of_a_clone: True if the hand-out has ``./course``.
     """
     text = Template(README.read_text(encoding="utf-8"), trim_blocks=True, keep_trailing_newline=True)
-    return text.render(title=title, of_a_clone=of_a_clone, package=PACKAGE)
+    title = " · ".join(one.title for one in chapters)
+    extras = ["ros", "notebooks", *(["interfaces"] if any(one.interfaces for one in chapters) else [])]
+    return text.render(title=title, of_a_clone=of_a_clone, install=f"{PACKAGE}[{','.join(extras)}]")
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:

@@ -24,6 +24,7 @@ from autograder.grading.classes.student_folders import RefusedFile, folders_in, 
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.safe_files import remove_unfinished
 from autograder.student import known_classes
+from course_runtime.own_interfaces import CannotBuildInterfaces, built_interfaces
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -148,12 +149,17 @@ class ClassDirectory:
 
     @functools.cached_property
     def overlays(self) -> tuple[Path, ...]:
-        """The installed workspaces that ``class.toml`` names: every box of the class sees them.
+        """The installed workspaces that every box of the class sees.
+
+        They are those that ``class.toml`` names, and the interface packages of a course in a repository of its own.
 
         Raises:
-            GradingError: The file cannot be used, or names something else.
+            GradingError: The file cannot be used, or names something else; or a package cannot be built.
         """
-        return read_overlays(self.path)
+        try:
+            return (*read_overlays(self.path), *built_interfaces(course.root()))
+        except CannotBuildInterfaces as error:
+            raise GradingError(str(error)) from error
 
     @property
     def time_zone(self) -> ZoneInfo:
