@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     Known = tuple[int, str]
     """A process id and the start time of the process (:func:`_started_at`). If the system reuses the id for another
@@ -127,14 +127,13 @@ def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
         process.wait()
 
 
-def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
+def end_descendants(within: float = 3.0) -> int:
     """Kill every descendant of this process, and wait for those that are, or become, its children.
 
     Call this only in a process that adopts orphans, at a time when it needs none of its children.
 
     Args:
         within: The limit in seconds. A process in an uninterruptible system call dies only when that call ends.
-        spare: Children that are not killed, and neither are their descendants.
 
     Returns:
         The number of processes that were found.
@@ -142,7 +141,7 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
     seen: set[int] = set()
     deadline = time.monotonic() + within
     while time.monotonic() < deadline:
-        children = [child for child in _children(os.getpid()) if child not in spare]
+        children = _children(os.getpid())
         if not children:
             break
         alive = [*children, *(below for child in children for below in descendants(child))]

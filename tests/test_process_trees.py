@@ -57,16 +57,6 @@ def test_a_daemon_does_not_outlive_the_submission() -> None:
     assert result.stdout.split() == ["1", "gone"]
 
 
-SPARED = cases(__file__, "SPARED")
-
-
-def test_a_helper_and_what_is_below_it_are_spared() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", SPARED], capture_output=True, text=True, timeout=180, check=True
-    )
-    assert done.stdout.split() == ["1", "True", "True", "sleep", "2"]
-
-
 def test_a_later_process_of_the_same_number_is_left_alone() -> None:
     with subprocess.Popen(["sleep", "600"]) as sleeper:
         kill({(sleeper.pid, "1"), (sleeper.pid, "")})

@@ -136,12 +136,10 @@ def card_words(module: str) -> dict[str, tuple[str, str]]:
     return {name: (row["text"], row["next_step"]) for name, row in rows.items()}
 
 
-def filled_in(
-    words: tuple[str, str], /, *, traceback: str = "", uses: Sequence[str] = (), **values: object
-) -> Advice:
+def filled_in(words: tuple[str, str], /, *, traceback: str = "", **values: object) -> Advice:
     """Return the advice with two texts of :func:`card_words`, whose placeholders stand for the given values."""
     text, next_step = (one.format(**values) for one in words)
-    return Advice(text, next_step, traceback, uses=uses)
+    return Advice(text, next_step, traceback)
 
 
 def unless(
