@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, named_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -78,12 +78,20 @@ def course(tmp_path: Path) -> Course:
     return made
 
 
-@pytest.mark.parametrize("arguments", [(), ("help",)])
-def test_help_needs_no_set_up(course: Course, arguments: tuple[str, ...]) -> None:
-    done = course.run(*arguments)
-    assert done.returncode == 0
-    assert "usage: ./course COMMAND" in done.stdout
-    assert course.ran() == []
+@pytest.mark.parametrize(
+    ("words", "variables", "code", "ran", "says"), named_cases(__file__, "what_a_command_runs_and_says")
+)
+def test_what_a_command_runs_and_says(
+    course: Course,
+    words: tuple[str, ...],
+    variables: dict[str, str],
+    code: int,
+    ran: tuple[str, ...],
+    says: str,
+) -> None:
+    done = course.run(*words, cwd=None, **variables)
+    assert (done.returncode, tuple(course.ran())) == (code, ran)
+    assert says in done.stdout + done.stderr
 
 
 def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
@@ -166,21 +174,6 @@ def test_it_is_found_through_links(course: Course, tmp_path: Path) -> None:
     assert course.ran() == ["set-up --token", "autograder [check]"]
 
 
-def test_the_libraries_are_left_alone_where_something_is_sourced(course: Course) -> None:
-    done = course.run("check", LD_LIBRARY_PATH="/opt/ros/humble/lib")
-    assert done.stdout.endswith("|/opt/ros/humble/lib\n")
-
-
-def test_lab_is_the_autograders_own(course: Course) -> None:
-    assert course.run("lab", "--no-browser").returncode == 0
-    assert course.ran()[1] == "autograder [lab] [--no-browser]"
-
-
-def test_jupyter_is_jupyter_itself(course: Course) -> None:
-    assert course.run("jupyter", "lab", "--no-browser").returncode == 0
-    assert course.ran()[1] == "jupyter [lab] [--no-browser]"
-
-
 def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path) -> None:
     done = course.run("test", "-x", cwd=tmp_path)
     assert done.returncode == 0
@@ -217,13 +210,6 @@ def test_an_old_python_is_told_to_the_user(course: Course, tmp_path: Path) -> No
     done = course.run("check", PATH=str(old), PYTHON="")
     assert done.returncode == 2
     assert "Python 3.11 or newer is needed" in done.stderr
-    assert course.ran() == []
-
-
-def test_a_named_python_that_is_none_is_an_error_and_no_other_is_taken(course: Course) -> None:
-    done = course.run("check", PYTHON="/nowhere/my python")
-    assert done.returncode == 2
-    assert "/nowhere/my python" in done.stderr
     assert course.ran() == []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Part
+from tests.cases import cases
 
 
 def output(text: str) -> Event:
@@ -12,33 +13,12 @@ def output(text: str) -> Event:
 
 
 @pytest.mark.parametrize(
-    ("event", "words"),
-    [
-        (output("hello"), ["hello"]),
-        (output("[INFO] [1763632000.5] [client]: 7"), ["7"]),
-        (Event(0.0, "log", "client", {"text": "7"}), ["7"]),
-        (Event(0.0, "log", "rclpy_student", {"text": "7"}), ["7"]),
-        (output("2026-11-20: the goal was aborted"), ["2026-11-20: the goal was aborted"]),
-        (Event(0.0, "log", "client.action_client", {"text": "Ignoring unexpected result response."}), []),
-        (output("[WARN] [1763632000.5] [client.action_client]: Ignoring unexpected result response."), []),
-        (output("[ERROR] [1763632000.5] [rcl]: Failed to publish log message to rosout"), []),
-        (
-            output("\x1b[37;1m2026-11-20 10:41:00.123 \x1b[31;1m[RTPS_HISTORY Error] \x1b[0mChange is full"),
-            [],
-        ),
-        (
-            output(
-                "\x1b[37;1m2026-11-21 07:12:22.318 \x1b[31;1m[\x1b[37;1mRTPS_TRANSPORT_SHM\x1b[31;1m Error] "
-                "\x1b[37mFailed init_port fastrtps_port7008: open_and_lock_file failed\x1b[34;1m -> Function "
-                "\x1b[36mopen_port_internal\x1b[m"
-            ),
-            [],
-        ),
-        (output("@process left"), []),
-    ],
+    ("kind", "name", "text", "words"), cases(__file__, "what_ros_itself_says_is_not_the_subjects_word")
 )
-def test_what_ros_itself_says_is_not_the_subjects_word(event: Event, words: list[str]) -> None:
-    assert Part("part", {}, [event]).said() == words
+def test_what_ros_itself_says_is_not_the_subjects_word(
+    kind: str, name: str, text: str, words: tuple[str, ...]
+) -> None:
+    assert Part("part", {}, [Event(0.0, kind, name, {"text": text})]).said() == list(words)
 
 
 def test_what_logging_says_of_a_line_that_it_could_not_log_is_not_the_subjects_word() -> None:
