@@ -361,9 +361,21 @@ def test_no_modules_import_each_other_in_a_circle(folder: str) -> None:
     assert not circles(ROOT / folder)
 
 
-def test_modules_of_the_sandbox_do_not_even_name_each_others_types_in_a_circle() -> None:
+def test_modules_name_each_others_types_in_a_circle_in_two_rooms_alone() -> None:
+    """There each type needs the others: a world on paper, and the evidence with those who read it."""
+    rooms = ("autograder.authoring.paper.", "autograder.kit.")
     found = circles(PACKAGE, types=True)
-    assert not [circle for circle in found if any(name.startswith("autograder.boxes.") for name in circle)]
+    assert [
+        one for one in found if not any(all(name.startswith(room) for name in one) for room in rooms)
+    ] == []
+
+
+def test_the_course_s_own_ros2_may_be_taken_out() -> None:
+    """The package runs the program ``ros2`` that is installed, whoever has made it."""
+    assert [
+        path for path, _, name in imports(PACKAGE) if name.startswith("course_runtime.ros2_command")
+    ] == []
+    assert any(name.startswith("course_runtime.ros2_command") for _, _, name in imports(ROOT / "environment"))
 
 
 def test_a_circle_is_found_wherever_the_import_stands(tmp_path: Path) -> None:
