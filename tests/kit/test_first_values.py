@@ -110,7 +110,7 @@ def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says
 @pytest.mark.parametrize(("events", "given", "says"), cases(__file__, "what_set_the_time_going_is_said"))
 def test_what_set_the_time_going_is_said(events: str, given: str, says: str) -> None:
     words = events.split()
-    kinds = {"sent": ("sent", "/go"), "said": ("message", "/said")}
+    kinds = {"sent": ("sent", "/go"), "said": ("message", "/said"), "answer": ("response", "/where")}
     seen = [
         Event(
             float(at),

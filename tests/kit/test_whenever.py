@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.kit.evidence import Event, Part
+from autograder.kit.oracle.naming.located import located
 from autograder.kit.oracle.naming.whenever import whenever
 from autograder.kit.oracle.outputs import Kind, Output
 
@@ -94,3 +95,14 @@ def test_a_word_of_the_input_tells_it(due: list[Any], *, is_told: bool) -> None:
     came = [[["far"]] if step in (1, 2) else values for step, values in enumerate(due)]
     text = told(output, run(came, given=given), run(due, given=given))
     assert text.endswith("each time that a value of the input is None, and only then.") is is_told
+
+
+def test_a_sentence_about_the_values_themselves_stands_alone() -> None:
+    numbers = Output("/said", ("left",), Kind.STEPS, 1e-3)
+    seen, due = (
+        run([[[values]] if n in ABORTED else [] for n in range(5)]) for values in ([1, 2, 3], [3, 2, 1])
+    )
+    advice = located([numbers, DOCK], seen, due, {})
+    assert advice is not None
+    assert advice.text.startswith("The numbers of your left on /said go up")
+    assert "only then" not in advice.text

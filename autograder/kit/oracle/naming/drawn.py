@@ -18,7 +18,7 @@ from autograder.kit.mistakes.uncalled import METHOD_UNCALLED
 from autograder.kit.model import UNKNOWN, Advice, Mistake
 from autograder.kit.oracle.naming import mutant_words
 from autograder.kit.oracle.naming.deltas import differences, meanings_of, rows
-from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.naming.effects import Effect, effect
 from autograder.kit.oracle.naming.located import first_apart, located
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.oracle.standing_clock import KEY, on_another_clock
@@ -193,8 +193,10 @@ class Drawn(OwnScenario):
             whole = self._effects(run, due)
             if told and told.key == EXCHANGED and whole:
                 continue
-            if told and whole and told.key == KEPT:  # which condition or value it is, the mutants only guess
-                told = replace(told, text=whole)
+            if (
+                told and whole and whole.is_once and told.key == KEPT
+            ):  # which condition or value it is, the mutants only guess
+                told = replace(told, text=whole.text)
             # One level of a ladder may be all that tells another number. But a busy machine may lose one step, too.
             if told and (apart.tells or (mutant_words.is_one_limit(found) and not surely)):
                 where = first_apart(self._outputs, run, due)
@@ -224,9 +226,9 @@ class Drawn(OwnScenario):
                 return self._located(evidence)
         return None
 
-    def _effects(self, run: Part, due: Part) -> str:
+    def _effects(self, run: Part, due: Part) -> Effect | None:
         told = (effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
-        return next((one.text for one in told if one), "")
+        return next(filter(None, told), None)
 
     def _located(self, evidence: Evidence) -> Advice | None:
         """Return the step at which the run leaves the solution's."""

@@ -28,10 +28,12 @@ class Effect(NamedTuple):
     Attributes:
         text: The sentence for the card.
         is_twice: True if each message comes twice, which the values of a single step show as well.
+        is_once: True if no message comes a second time.
     """
 
     text: str
     is_twice: bool = False
+    is_once: bool = False
 
 
 def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -> Effect | None:
@@ -54,7 +56,7 @@ def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -
         return Effect(f"Your node says everything{name} twice.", is_twice=True) if is_whole else None
     if any(len(mine[step]) != len(theirs[step]) for step in steps):
         once = _only_once(name, [(mine[step], theirs[step]) for step in steps], output.tolerance)
-        return Effect(once) if once else None
+        return Effect(once, is_once=True) if once else None
     fields = _fields(output, name, [(mine[step], theirs[step]) for step in steps])
     told = (_values(what, pairs, output.tolerance) for what, pairs in fields)
     return next((Effect(text) for text in told if text), None)

@@ -26,6 +26,8 @@ LONGEST_PIECE, ALIKE = 30, 4
 """The most letters that are missing in a text, or too many, for a card to say so; and how many have to follow alike."""
 AT_ONCE, EARLY, LATE = 0.05, 0.06, 0.11
 """Seconds: between two messages of one callback, and by which a timer that looks ten times a second may be apart."""
+ANSWERS = ("response", "goal_answered", "feedback", "result")
+"""The kinds of events that a node may answer with a message at any time."""
 LAST, MANY = 3, 3
 """The number of inputs that may have set a timer, and of messages from which on a number of them may be meant."""
 _WHOLE_MESSAGE = re2.compile(r"\.(?:msg|srv|action)\.\w+\(")
@@ -53,12 +55,12 @@ def hint(output: Output, run: Part, due: Part, seconds: Sequence[float] = ()) ->
     if told := (
         _of_rejected(between)
         or _too_often(came, asked, said)
+        or (None if asked else _late(output, run, came))
         or (_set_going(said, is_silent, run, seconds) if said and len(came) > len(asked) else None)
         or _too_few(output, came, asked, mine)
         or _too_late(output, run, came, asked, theirs, seconds)
         or (_not_set_going(output, run, steps[0], mine, seconds) if asked and not came else None)
         or _too_early(came, asked, mine, theirs)
-        or (None if asked else _late(output, run, came))
     ):
         return told
     inputs = [event for event, step in _inputs(output, run) if step <= steps[0]]
@@ -149,7 +151,11 @@ def _set_going(said: Sequence[Event], is_silent: bool, run: Part, seconds: Seque
     for event, passed in _runs_since(moment, inputs[:-1], seconds):
         newer = input_in_words(inputs[inputs.index(event) + 1])
         return filled_in(_WORDS["not_set_back"], seconds=passed, given=input_in_words(event), newer=newer)
-    if not is_silent or not inputs:
+    comes_of_it = any(
+        event.kind in ANSWERS and inputs and inputs[-1].moment < event.moment <= moment
+        for event in run.events
+    )
+    if not is_silent or not inputs or comes_of_it:
         return None
     passed = f"{moment - inputs[-1].moment:.2g}"
     return filled_in(_WORDS["by_a_timer"], seconds=passed, given=input_in_words(inputs[-1]))

@@ -50,12 +50,14 @@ def located(
         what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
-        always = None if whole and whole.is_twice else whenever(output, run, due, outputs)
-        values = hint(output, run, due, seconds) or Advice("", always.next_step if always else GO_THROUGH)
-        shows = "" if whole and whole.is_twice else values.text
+        values = hint(output, run, due, seconds)
+        # Where the values show what it is, the word beside which it is wrong would only lead away.
+        always = None if values or (whole and whole.is_twice) else whenever(output, run, due, outputs)
+        shows = "" if values is None or (whole and whole.is_twice) else values.text
+        next_step = next((one.next_step for one in (values, always) if one), GO_THROUGH)
         # The values show more than a sentence of the task does.
         words = (whole.text if whole else "", always.text if always else "", shows, what, says * (not shows))
-        return Advice(" ".join(filter(None, words)), values.next_step, uses=always.uses if always else uses)
+        return Advice(" ".join(filter(None, words)), next_step, uses=always.uses if always else uses)
     return None
 
 
