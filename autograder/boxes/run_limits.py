@@ -67,7 +67,7 @@ class Limits:
         scratch_files: The maximum number of these files, with folders and links.
     """
 
-    # docs/decisions.md says how much notebooks need, and why these limits are several times as high.
+    # docs/decisions.md says how long notebooks take; these limits are several times as high as what they need.
     cell_seconds: float = 60.0
     terminal_factor: float = 2.0
     check_margin: float = 10.0
