@@ -1,4 +1,4 @@
-"""Builds interface packages in the user's cache, where the same definitions are built once; a process of its own."""
+"""Builds interface packages in the user's cache, the same definitions once. It is a process of its own."""
 
 from __future__ import annotations
 

@@ -158,7 +158,7 @@ SOURCE_REPAIRS = (
     SourceRepair(
         "rosidl_generator_py/__init__.py",
         re.compile(r"^try:\n    from \.generate_py_impl import generate_py\n.*\Z", re.MULTILINE | re.DOTALL),
-        "the generator is imported where it is used.",
+        "the generator is imported when it is used.",
         """{mark}
 def __getattr__(name):
     if name == 'generate_py':
@@ -170,7 +170,7 @@ def __getattr__(name):
     SourceRepair(
         "service_msgs/msg/_service_event_info.py",
         re.compile(r"^import numpy\b[^\n]*$", re.MULTILINE),
-        "numpy is imported where it is used.",
+        "numpy is imported when it is used.",
         """{mark}
 class _Numpy:
     def __getattr__(self, name):
@@ -183,7 +183,7 @@ numpy = _Numpy()""",
     SourceRepair(
         "rfc3987_syntax/__init__.py",
         re.compile(r"^from \.syntax_helpers import \*\s*\Z"),
-        "the grammars are compiled where one is used.",
+        "the grammars are compiled when one is used.",
         """{mark}
 def is_valid_syntax(term, value):
     from .syntax_helpers import is_valid_syntax

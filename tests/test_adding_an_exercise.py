@@ -46,12 +46,12 @@ def test_the_page_shows_the_exercise_that_its_command_writes() -> None:
 @pytest.mark.ros
 @pytest.mark.slow
 def test_the_page_does_what_it_says(tmp_path: Path) -> None:
-    (tmp_path / "solutions/01_ros2_fundamentals").mkdir(parents=True)
-    (tmp_path / "solutions/01_ros2_fundamentals/chapter.toml").write_text('title = "First"\n')
+    (tmp_path / "solutions/02_bridging_python_agents").mkdir(parents=True)
+    (tmp_path / "solutions/02_bridging_python_agents/chapter.toml").write_text('title = "First"\n')
     making, trying, building = COMMAND.findall(PAGE)
     made = run(tmp_path, making)
     assert made.returncode == 0, made.stderr
-    folder = tmp_path / "solutions/01_ros2_fundamentals/lab_8_1"
+    folder = tmp_path / "solutions/02_bridging_python_agents/lab_8_1"
     for name in re.findall(r"^\| `([^`]+)` \|", PAGE, re.MULTILINE):
         assert (folder / name).exists(), name
     tried = run(tmp_path, trying)

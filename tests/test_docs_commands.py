@@ -55,7 +55,7 @@ RUN_BY = {
     "./course export": GUIDE,
     "./course grade": GUIDE,
     "./course hand-out": GUIDE,
-    "./course jupyter lab": f"{_SCRIPT}test_jupyter_is_jupyter_itself",
+    "./course jupyter lab": f"{_SCRIPT}test_what_a_command_runs_and_says",
     "./course lab": "student/test_lab_server.py::test_the_address_stands_last_and_alone",
     "./course nbgrader autograde": GUIDE,
     "./course nbgrader db student add": "test_docs_commands.py::test_a_student_is_added_by_hand",

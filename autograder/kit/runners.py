@@ -1,6 +1,6 @@
 """The kinds of runners, which build and start a path that is given as the subject.
 
-What they report stands in their output: :mod:`autograder.kit.output`.
+Their reports stand in their output: :mod:`autograder.kit.output`.
 """
 
 from __future__ import annotations

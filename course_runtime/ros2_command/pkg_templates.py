@@ -173,7 +173,7 @@ endif()
 find_package(ament_cmake REQUIRED)
 {found}{_cmake_node(package)}
 if(BUILD_TESTING)
-  # Where the linters are not installed there is nothing to run.
+  # If the linters are not installed, there is nothing to run.
   find_package(ament_lint_auto QUIET)
   if(ament_lint_auto_FOUND)
     # Remove these two lines when the package is in a git repository and its files have a copyright header.

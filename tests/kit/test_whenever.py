@@ -50,7 +50,7 @@ def told(output: Output, seen: Part, due: Part) -> str:
         (
             ABORTED,
             (),
-            "Your node says something on /said, where nothing is due, each time that status on /dock is",
+            "Your node says something on /said, although nothing is due, each time that status on /dock is",
         ),
         (
             (),

@@ -26,7 +26,7 @@ _OTHERS = {
 _VELOCITIES = {".linear.x": ".angular.z", ".angular.z": ".linear.x"}
 """The two numbers of a Twist that a robot on wheels obeys."""
 _OF_ALL = ("min({0})", "max({0})", "sum({0})/len({0})", "min({0}[:3])", "min([*{0}[-3:], *{0}[:4]])")
-"""Values of a whole list in place of one element."""
+"""Values of a whole list instead of one element."""
 
 
 def other_field(code: Code) -> Iterator[Edit]:

@@ -212,7 +212,7 @@ def _not_set_going(
 def _too_early(
     came: Sequence[Any], asked: Sequence[Any], mine: Mapping[int, Any], theirs: Mapping[int, Any]
 ) -> Advice | None:
-    """Return that a text comes where it is due, and elsewhere, too."""
+    """Return that a text comes when it is due, and at other times, too."""
     extra = next((one for one in came if one not in asked), None)
     if not asked or extra is None or len(extra) != 1 or not isinstance(extra[0], str):
         return None

@@ -51,7 +51,7 @@ def located(
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
         values = hint(output, run, due, seconds)
-        # Where the values show what it is, the word beside which it is wrong would only lead away.
+        # If the values show the cause, the word beside which it is wrong would only lead away.
         always = None if values or (whole and whole.is_twice) else whenever(output, run, due, outputs)
         shows = "" if values is None or (whole and whole.is_twice) else values.text
         next_step = next((one.next_step for one in (values, always) if one), GO_THROUGH)

@@ -59,7 +59,7 @@ def _deed(output: Output, pairs: Sequence[tuple[Any, Any]]) -> str:
     if output.kind is Kind.RETURNED:
         return "Your code returns what is wrong"
     if not any(asked for _, asked in pairs):
-        return f"Your node says something on {output.name}, where nothing is due,"
+        return f"Your node says something on {output.name}, although nothing is due,"
     if not any(came for came, _ in pairs):
         return f"Your node says nothing on {output.name}"
     return f"Your node is wrong on {output.name}"
