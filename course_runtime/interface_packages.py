@@ -69,7 +69,7 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
 
 
 def missing_packages(root: Path) -> list[Path]:
-    """Return the folders of the packages that this Python cannot import: they are not built, and no workspace with them is sourced."""
+    """Return the folders of the packages that this Python cannot import, since they are neither built nor sourced."""
     return [package for package in interface_packages(root) if find_spec(package.name) is None]
 
 
