@@ -146,7 +146,9 @@ def test_every_command_is_run_by_a_test() -> None:
     assert set(found) | {"git clone"} == set(RUN_BY)
     for shown, test in RUN_BY.items():
         file, _, name = test.partition("::")
-        source = (ROOT / "tests" / file).read_text(encoding="utf-8")
+        python = ROOT / "tests" / file
+        sources = (python, python.with_suffix(".toml"))
+        source = "".join(one.read_text(encoding="utf-8") for one in sources if one.exists())
         assert f"def {name}(" in source, shown
         if page := TYPES_A_PAGE.get(test):
             assert any(typed.in_block and page in typed.page for typed in found[shown]), shown

@@ -28,7 +28,7 @@ IN_NUMBERS = {word: number for number, word in IN_WORDS.items()}
 
 def number(text: str) -> int:
     """A number as it stands in prose."""
-    return IN_NUMBERS.get(text) or int(text)
+    return IN_NUMBERS.get(text.lower()) or int(text)
 
 
 def found(pattern: str, page: str) -> re.Match[str]:
