@@ -62,8 +62,8 @@ def blind() -> str:
     written, lost, mistaken = map(number, right.groups())
     return (
         f"Of {written - mistaken} right ones {IN_WORDS[lost - mistaken]} lost points (their tasks now say which words "
-        f"count); of {wrong[1]} wrong ones none passed. On {later[1]}, {later[3]} of {later[2]} more wrong ones passed: "
-        f"{later[4]} do what their tasks ask or leave open, {later[6]} others are rejected since."
+        f"count); of {wrong[1]} wrong ones none passed. On {later[1]}, {later[3]} of {later[2]} more wrong ones "
+        f"passed: {later[4]} do what their tasks ask or leave open, {later[6]} others are rejected since."
     )
 
 
