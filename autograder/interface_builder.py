@@ -32,11 +32,13 @@ def main(packages: Sequence[str]) -> int:
     Returns:
         The exit code.
     """
-    build = _build([Path(package) for package in packages])
+    folders = [Path(package) for package in packages]
+    build = _build(folders)
     if build.ok:
         print(*build.prefixes, sep="\n")
     else:
-        print(f"{build.package or 'the interfaces'} cannot be built: {build.line}")
+        names = build.package or ", ".join(folder.name for folder in folders)
+        print(f"{names} cannot be built: {build.line}")
     return not build.ok
 
 
