@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.oracle.outputs import Output
 
 ITEM, LONG = "; ", 60
-"""What divides the items of a list in words, and the number of letters from which on a card leaves common ones out."""
+"""The text between the items of a list in words; from so many letters on, a card leaves out those that are alike."""
 _SECONDS = re2.compile(r"\b(\d+(?:\.\d+)?) ?s(?:econds?)?\b")
 GO_THROUGH = "Go through your code with this input, step by step, and compare it with the task."
 
