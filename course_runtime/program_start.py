@@ -1,4 +1,4 @@
-"""What `ros2 run` starts a program with: a new process, unless the process that `ros2` runs in knows a faster way."""
+"""Starts a program for `ros2 run`: in a new process, unless the process that `ros2` runs in knows a faster way."""
 
 from __future__ import annotations
 

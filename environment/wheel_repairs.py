@@ -138,7 +138,7 @@ class SourceRepair:
     Attributes:
         file: The module, below site-packages.
         now: The text that is replaced.
-        change: What is so afterwards, in a sentence. It stands in the module, which shows that it is repaired.
+        change: A sentence that says what the change does. It is written into the module, to show that it is repaired.
         later: The text that replaces it, as a template of ``re``: ``\g<name>`` is a group of ``now``, and ``{mark}`` is
             the comment with ``change``.
     """

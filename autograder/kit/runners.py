@@ -1,6 +1,6 @@
 """The kinds of runners, which build and start a path that is given as the subject.
 
-Their reports stand in their output: :mod:`autograder.kit.output`.
+They print their reports, which :mod:`autograder.kit.output` reads.
 """
 
 from __future__ import annotations

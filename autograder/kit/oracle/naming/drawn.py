@@ -187,15 +187,14 @@ class Drawn(OwnScenario):
             if not apart.is_whole or run.traceback or self._is_silent(run, due):
                 continue
             found = meanings_of(mutants, apart, self._outputs[0].tolerance)
-            if mutant_words.are_of_several_kinds(found) and self._effects(run, due):
+            whole = self._effects(run, due)
+            if whole and mutant_words.are_of_several_kinds(found):
                 continue
             told = mutant_words.advice(found, mutants)
-            whole = self._effects(run, due)
-            if told and told.key == EXCHANGED and whole:
+            if told and whole and told.key == EXCHANGED:
                 continue
-            if (
-                told and whole and whole.is_once and told.key == KEPT
-            ):  # which condition or value it is, the mutants only guess
+            if told and whole and whole.is_once and told.key == KEPT:
+                # Which condition or value it is, the mutants only guess.
                 told = replace(told, text=whole.text)
             # One level of a ladder may be all that tells another number. But a busy machine may lose one step, too.
             if told and (apart.tells or (mutant_words.is_one_limit(found) and not surely)):
