@@ -107,6 +107,9 @@ def environment_values(place: Place) -> dict[str, str]:
         "ROS_PYTHON_VERSION": "3",
         # Names of students and files are UTF-8, whatever the terminal's locale says.
         "PYTHONUTF8": "1",
+        # rclpy imports numpy. Its library would start a thread for each core, and each thread begins with a busy loop:
+        # a quarter of the CPU time of importing rclpy on two cores, and more on more cores.
+        "OPENBLAS_NUM_THREADS": "1",
     }
 
 

@@ -101,6 +101,12 @@ def test_ros_is_found_with_nothing_sourced(bare: dict[str, str]) -> None:
 
 
 @pytest.mark.ros
+def test_numpy_starts_no_thread_when_it_is_imported(bare: dict[str, str]) -> None:
+    code = "import os, numpy; print(len(os.listdir('/proc/self/task')))"
+    assert start(bare, "-c", code) == "1\n"
+
+
+@pytest.mark.ros
 def test_another_ros_in_front_does_not_get_in_the_way(bare: dict[str, str], foreign: Path) -> None:
     package = foreign / "lib/python3/site-packages/rclpy/__init__.py"
     package.parent.mkdir(parents=True)
