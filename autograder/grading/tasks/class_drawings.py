@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.running.batch_progress import BatchProgress
     from autograder.grading.running.execution_backends import Execute
 
 FOLDER = "drawings"
@@ -81,15 +82,22 @@ class ClassDrawings:
         """
         return [self._task(one) for one in sorted(drawings) if not self._read(one)]
 
-    def record(self, missing: Sequence[Task], execute: Execute) -> dict[str, str]:
+    def record(self, missing: Sequence[Task], execute: Execute, progress: BatchProgress) -> dict[str, str]:
         """Execute the tasks of :meth:`missing`, and store the recordings.
+
+        Args:
+            missing: The tasks.
+            execute: Executes them.
+            progress: Shows which task begins and ends.
 
         Returns:
             For each exercise of which a drawing could not be recorded, the reason.
         """
         reasons = {task.assignment: task.problem for task in missing if task.problem}
-        for done in execute((task for task in missing if not task.problem), on_start=lambda _: None):
+        tasks = (task for task in missing if not task.problem)
+        for done in execute(tasks, on_start=lambda task: progress.started(task.label)):
             task, execution = done.task, done.execution
+            progress.finished(task.label, failed=bool(execution.trouble))
             recorded = execution.evidence.get(task.assignment, b"").decode()
             if recorded and not execution.trouble:
                 file = self._file(Drawing(task.assignment, int(task.notebook)))
