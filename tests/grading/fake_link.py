@@ -39,6 +39,7 @@ class FakeLink:
             self.in_flight.discard(command.number)
             return
         self.given.append(command)
+        assert len(self.given) < 200, "the same notebooks are given again and again"
         self.in_flight.add(command.number)
         self.most_in_flight = max(self.most_in_flight, len(self.in_flight))
         news = self.answer(command, task_in(command))
