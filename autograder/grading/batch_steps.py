@@ -195,12 +195,10 @@ class Batch:
                 drawings = [one for made in self._tasks_of(work) for one in drawings_of(made.task)]
             needed.update(drawings)
         if missing := self._drawings.missing(needed):
-            words = f"running the solution {len(missing)} times, with inputs that only this class has"
-            plain_line(self._console, f"{words}; the next run does not repeat this")
+            plain_line(self._console, f"running the solution in this class's inputs, {len(missing)} times")
             # On a cluster, this machine executes nothing else, so it is prepared only now.
             own = self._execute if self._backend is self._here else self._stack.enter_context(self._here)
-            can_run = sum(not task.problem for task in missing)
-            with BatchProgress(self._console, can_run, doing="recording", did="recorded") as progress:
+            with BatchProgress(self._console, len(missing), doing="recording", did="recorded") as progress:
                 reasons = self._drawings.record(missing, own, progress)
             self._problems += (
                 f"{exercise} cannot be checked, because its solution was not recorded: {why}"

@@ -94,8 +94,8 @@ class ClassDrawings:
             For each exercise of which a drawing could not be recorded, the reason.
         """
         reasons = {task.assignment: task.problem for task in missing if task.problem}
-        tasks = (task for task in missing if not task.problem)
-        for done in execute(tasks, on_start=lambda task: progress.started(task.label)):
+        can_run = (task for task in missing if not task.problem)
+        for done in execute(can_run, on_start=lambda task: progress.started(task.label)):
             task, execution = done.task, done.execution
             progress.finished(task.label, failed=bool(execution.trouble))
             recorded = execution.evidence.get(task.assignment, b"").decode()
