@@ -10,6 +10,7 @@ import re2
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import remark
 from autograder.kit.mistakes.client_waits import Wait
+from autograder.kit.mistakes.crashes import on_purpose
 from autograder.kit.model import Finding, unless
 from autograder.kit.outcomes import Outcome
 from autograder.kit.reported_texts import mentions, said_first_after
@@ -283,12 +284,15 @@ tells_of_refusal = unless(f"says {REJECTED} and ends", refused_as_seen)
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
-    """Decide whether the client handles a refused goal well. A function that returns must return an empty list."""
-    told = tells_of_refusal(evidence)
-    returned = returned_instead(evidence.part(REFUSED), [])
-    if not told.passed or not returned:
+    """Decide whether the client handles a refused goal well: a function returns an empty list, or raises on purpose."""
+    told, part = tells_of_refusal(evidence), evidence.part(REFUSED)
+    if not told.passed:
         return told
-    return Finding(False, "an empty list is returned for a goal that was rejected", f"returned {returned}")
+    expected = "an empty list is returned for a goal that was rejected"
+    if part.traceback and not on_purpose(part.traceback):
+        return Finding(False, expected, part.traceback.strip().splitlines()[-1])
+    returned = returned_instead(part, [])
+    return Finding(False, expected, f"returned {returned}") if returned else told
 
 
 tells_of_abort = unless(f"says {WAS_ABORTED}, or `status` and 6", aborted_as_seen)
