@@ -286,13 +286,12 @@ tells_of_refusal = unless(f"says {REJECTED} and ends", refused_as_seen)
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
     """Decide whether the client handles a refused goal well: a function returns an empty list, or raises on purpose."""
     told, part = tells_of_refusal(evidence), evidence.part(REFUSED)
-    if not told.passed:
+    returned = returned_instead(part, [])
+    crash = "" if on_purpose(part.traceback) else part.traceback.strip().rpartition("\n")[2]
+    if not told.passed or not (returned or crash):
         return told
     expected = "an empty list is returned for a goal that was rejected"
-    if part.traceback and not on_purpose(part.traceback):
-        return Finding(False, expected, part.traceback.strip().splitlines()[-1])
-    returned = returned_instead(part, [])
-    return Finding(False, expected, f"returned {returned}") if returned else told
+    return Finding(False, expected, crash or f"returned {returned}")
 
 
 tells_of_abort = unless(f"says {WAS_ABORTED}, or `status` and 6", aborted_as_seen)
