@@ -10,7 +10,7 @@ import re2
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import remark
 from autograder.kit.mistakes.client_waits import Wait
-from autograder.kit.mistakes.crashes import on_purpose
+from autograder.kit.mistakes.crashes import on_purpose, what_and_where
 from autograder.kit.model import Finding, unless
 from autograder.kit.outcomes import Outcome
 from autograder.kit.reported_texts import mentions, said_first_after
@@ -280,14 +280,14 @@ def reports_the_result(evidence: Evidence) -> Finding:
 
 
 tells_of_refusal = unless(f"says {REJECTED} and ends", refused_as_seen)
-"""Decides whether the client reports a refused goal, requests no result for it, and ends."""
+"""Decides whether the client reports a refused goal, and ends."""
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
     """Decide whether the client handles a refused goal well: a function returns an empty list, or raises on purpose."""
     told, part = tells_of_refusal(evidence), evidence.part(REFUSED)
     returned = returned_instead(part, [])
-    crash = "" if on_purpose(part.traceback) else part.traceback.strip().rpartition("\n")[2]
+    crash = part.traceback and not on_purpose(part.traceback) and what_and_where(part.traceback)
     if not told.passed or not (returned or crash):
         return told
     expected = "an empty list is returned for a goal that was rejected"
