@@ -122,6 +122,8 @@ EXERCISE = Mission(
     "Switch the robot's lamp on when it comes near the door, and off when it leaves.",
     roles=("client", "subscription"),
     draws=places,
+    # A node that remembers the lamp's state only when the answer comes would ask again meanwhile.
+    late={"/lamp": lambda random: [random.choice((0.25, 0.3, 0.35)) for _ in range(8)]},
     same=[("Calls once for each change, in time", calls, "lamp", 10)],
     knows=[
         (
