@@ -55,8 +55,8 @@ UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 """The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
 ACCEPTED = "You may print the dictionary instead. A value may be a list of one name or type."
 """The other forms of an answer with several keys that count. A list of several is a guess."""
-_NODE_NOT_MET = ("NodeNameNonExistentError", "Failed to get action server names and type")
-"""The words of rclpy's errors if a node is asked about that is not on the graph yet: also those for its actions."""
+_NO_SUCH_NODE = re2.compile("NodeNameNonExistentError|Failed to get action server names and type")
+"""Matches the words of rclpy's errors about a node that is not on the graph: also those about its actions."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 
 _WORDS = card_words(__file__)
@@ -65,9 +65,9 @@ _WORDS = card_words(__file__)
 class Quest:
     """The recipe for a quest. Criteria and mistakes get all runs as :class:`Search`, by the names of the robots.
 
-    The recipe recognizes the mistakes ``looked_too_early``, ``wrong_node``, ``not_returned``, ``looked_once``,
-    ``invented_answer``, ``waits_forever``, ``silent_end``, ``patience_not_kept``, ``gave_up``, ``no_answer``,
-    ``never_ended``.
+    The recipe recognizes the mistakes ``other_namespace``, ``looked_too_early``, ``wrong_node``, ``not_returned``,
+    ``looked_once``, ``invented_answer``, ``waits_forever``, ``silent_end``, ``patience_not_kept``, ``gave_up``,
+    ``no_answer``, ``never_ended``.
 
     Args:
         draws: Draws the robots by name, in the order in which the subject meets them. The names are the same each time.
@@ -232,6 +232,7 @@ class Quest:
     def ladder(self) -> tuple[Mistake, ...]:
         """The mistakes of a quest, most specific first, among the common ones."""
         return (
+            self._mistake("other_namespace", _other_namespace),
             self._mistake("looked_too_early", _asked_too_early),
             self._mistake("not_written", _is_silent, certain=True),
             *CRASHES,
@@ -312,10 +313,14 @@ def _wrong(seen: Searches) -> list[Search]:
     return [search for search in seen.values() if search.robot.answer and not search.has()]
 
 
+def _other_namespace(seen: Searches) -> bool:
+    asked = (search for search in seen.values() if _NO_SUCH_NODE.search(search.part.traceback))
+    return any(node.count("/") > 1 for search in asked for node in search.robot.nodes)
+
+
 def _asked_too_early(seen: Searches) -> bool:
     for search in seen.values():
-        unmet = any(words in search.part.traceback for words in _NODE_NOT_MET)
-        if unmet or UNKNOWN_NODE in search.given.values():
+        if _NO_SUCH_NODE.search(search.part.traceback) or UNKNOWN_NODE in search.given.values():
             return True
     return any(search.given and not any(search.given.values()) for search in _wrong(seen))
 

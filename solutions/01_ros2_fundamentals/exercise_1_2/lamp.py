@@ -86,8 +86,7 @@ def never_off(now: Moment) -> bool:
 
 def other_way_round(now: Moment) -> bool:
     """Return True if the lamp was on elsewhere, and off at the door."""
-    turned = [(x, not on) for x, on in due(now)]
-    return asked(now) == turned != [] or does_as(now, lambda x: not is_near(x))
+    return asked(now) == [(x, not on) for x, on in due(now)] != [] or does_as(now, lambda x: not is_near(x))
 
 
 def one_side(now: Moment) -> bool:

@@ -24,8 +24,9 @@ def robot(random: Random, names: list[str], kind: str) -> Robot:
     subscription, or the last one, is wrong.
     """
     own, *others = (f"/{names.pop()}" for _ in range(4))
-    places = random.sample(NAMES, 8)
-    topics = iter([f"/{place}/{word}" for place, word in zip(places, random.sample(WORDS, 8), strict=True)])
+    # Who asks about a node has to give the node's own namespace: the node that is made first has one.
+    others[0] = f"/{random.choice(NAMES)}{others[0]}"
+    topics = map("/{}/{}".format, random.sample(NAMES, 8), random.sample(WORDS, 8))
     obeys = next(topics)
     heard = shuffled(random, [(next(topics), ANOTHER), (obeys, TWIST)])
     right: dict[str, Any] = {"publishes": {next(topics): TWIST}, "subscribes": dict(heard)}
