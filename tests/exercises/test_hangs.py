@@ -45,6 +45,29 @@ def test_a_blocking_call_beside_a_thread_that_spins_has_lost_its_node() -> None:
     assert next(m.key for m in HANGS if m.recognize(evidence)) == "node_taken_from_executor"
 
 
+@pytest.mark.parametrize(
+    ("events", "real_time", "threads", "is_proof"),
+    [
+        (["request"], False, [], True),
+        (["request"], False, [SPIN], False),
+        (["request", "response"], False, [SPIN], True),
+        (["request"], True, [SPIN], True),
+    ],
+    ids=["one thread", "another thread spins", "answered", "in real time"],
+)
+def test_a_call_that_another_thread_can_end_is_no_proof_before_its_answer(
+    events: list[str], real_time: bool, threads: list[tuple[str, str]], is_proof: bool
+) -> None:
+    """In simulated time, a late answer never comes to a callback that holds up the time until it comes."""
+    own = _stack(CALL, OWN, CALLS_BACK, CALLBACK, *([] if threads else [SPIN]))
+    text = "\n\n".join([own, *map(_stack, threads)])
+    seen = [*(Event(7.0, kind, "/lamp") for kind in events), Event(9.0, "stack", "subject", {"text": text})]
+    evidence = Evidence([Part("part", {}, seen)], Reference("x", {}), real_time)
+    found = next(mistake for mistake in HANGS if mistake.recognize(evidence))
+    assert (found.key == "call_in_same_group") is is_proof
+    assert found.certain is is_proof
+
+
 @pytest.mark.parametrize("where", IN_CALLBACK)
 def test_a_callback_that_does_not_come_back_is_named(where: str) -> None:
     main = _stack(CALL, ("/home/student/client.py", "main"))  # beside it, the main thread waits for it

@@ -208,6 +208,8 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
         found = [stack for part in evidence for stack in _stacks(part)]
         if not found or not fits(found) or (key == UNSPUN and any(map(answered, evidence))):
             return None
+        if key == "call_in_same_group" and _may_come_back(evidence, found):
+            return None
         texts = [str(event.data["text"]) for part in evidence for event in part.of("stack")]
         blocked = _that(found, _blocks)
         callback = _stuck_callback([blocked]) or _stuck_callback(found)
@@ -222,6 +224,15 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
         return Advice(text.format(**words), next_step.format(**words))
 
     return Mistake(key, recognize, certain=key in WAITS_FOR_ITSELF)
+
+
+def _may_come_back(evidence: Evidence, found: list[Stack]) -> bool:
+    """Return True if a call waits for a late answer of the judge, and another thread can take it.
+
+    While the callback waits, simulated time cannot go on, so the answer comes only in a look in real time.
+    """
+    owes = any(len(part.of("request")) > len(part.of("response")) for part in evidence)
+    return owes and not evidence.real_time and not any(_blocks(stack) and _spins(stack) for stack in found)
 
 
 def _never_leaves(thread: str) -> bool:

@@ -24,10 +24,11 @@ def stays(evidence: Evidence) -> Finding:
     )
 
 
+JUDGED = lamp.LAMP().exercise()
 EXERCISE = replace(
-    lamp.EXERCISE,
+    JUDGED,
     id="bugs_1._door",
-    criteria=[*lamp.EXERCISE.criteria, Criterion("hall", "Stays in the namespace /hall", 2.0, stays)],
+    criteria=[*JUDGED.criteria, Criterion("hall", "Stays in the namespace /hall", 2.0, stays)],
     text={},
     counts={},
 )

@@ -28,10 +28,11 @@ def logs(evidence: Evidence) -> Finding:
     )
 
 
+JUDGED = lamp.LAMP().exercise()
 EXERCISE = replace(
-    lamp.EXERCISE,
+    JUDGED,
     id="bugs_2._lamp",
-    criteria=[*lamp.EXERCISE.criteria, Criterion("logged", "Logs each answer of the lamp", 2.0, logs)],
+    criteria=[*JUDGED.criteria, Criterion("logged", "Logs each answer of the lamp", 2.0, logs)],
     text={},
     counts={},
 )

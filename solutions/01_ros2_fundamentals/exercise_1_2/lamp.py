@@ -115,14 +115,13 @@ def calls(now: Moment) -> str:
     return RIGHT if was_everywhere else f"{called}, and no answer after that"
 
 
-EXERCISE = Mission(
+LAMP = partial(
+    Mission,
     "exercise_1_2.lamp",
     "Exercise 1.2 · The lamp at the door",
     "Switch the robot's lamp on when it comes near the door, and off when it leaves.",
     roles=("client", "subscription"),
     draws=places,
-    # A node that remembers the lamp's state only when the answer comes would ask again meanwhile.
-    late={"/lamp": lambda random: [random.choice((0.25, 0.3, 0.35)) for _ in range(8)]},
     same=[("Calls once for each change, in time", calls, "lamp", 10)],
     knows=[
         (
@@ -168,7 +167,10 @@ EXERCISE = Mission(
         ),
     ],
     within=30.0,
-).exercise(
+)
+"""The mission of a lamp that answers at once, for the bug hunts about it."""
+# A node that remembers the lamp's state only when the answer comes would ask again meanwhile.
+EXERCISE = LAMP(late={"/lamp": lambda random: [random.choice((0.25, 0.3, 0.35)) for _ in range(8)]}).exercise(
     text={
         "Let the lamp be on while the robot is less than 1 meter from the door, at `x = 4`, and off elsewhere.": "lamp",
         "Call the service once for each change, and never more often.": "lamp",
