@@ -212,6 +212,17 @@ def test_a_function_that_prints_the_name_and_raises_has_returned_nothing() -> No
     assert not Search(replace(said, events=[started, *said.events, raised])).returned
 
 
+@pytest.mark.parametrize(("ending", "points"), [("raised", 0), ("returned", 10)])
+def test_a_function_may_print_its_dictionary_but_not_raise_after_it(ending: str, points: float) -> None:
+    """Whoever calls it gets the error, and no answer."""
+    started = Event(0.1, "subject", "started", {"accepted": []})
+    parts = [part(MIA, SAID, name="robot 0", ending=""), part(NOA, NOA_SAID, name="robot 1", ending="")]
+    assert not Search(replace(parts[0], events=[started, *parts[0].events])).has_answered
+    ended = Event(8.0, "subject", ending, {"value": "None", "traceback": "TimeoutError: nobody"})
+    judged = _judged(obeys(), *(replace(one, events=[started, *one.events, ended]) for one in parts))
+    assert judged[0] == points
+
+
 NOBODY = Robot(nodes=NOA.nodes)
 RAISED = {"traceback": 'Traceback (most recent call last):\n  File "x"\nTimeoutError: no node obeys'}
 

@@ -287,6 +287,9 @@ def _finding(search: Search, keys: Sequence[str]) -> Finding:
     expected = ", ".join(answer[key] for key in keys if key in answer) or "an answer"
     if search.has(*keys) and not search.returned:
         return Finding(False, expected, "named it, and did not return it")
+    if search.has(*keys) and search.part.ending is not None and search.part.ending.name == "raised":
+        raised = search.part.traceback.rstrip().rpartition("\n")[2]
+        return Finding(False, expected, f"named it, and then raised {raised}")
     said = ", ".join(given.get(key, "nothing") for key in keys) if given else search.in_words
     return Finding(search.has(*keys), expected, said)
 

@@ -126,7 +126,7 @@ class Search:
 
         A function that has to return a name has not answered by printing it.
         """
-        if self.is_function and len(self.robot.answer) == 1:
+        if self.is_function:
             return self.part.ending is not None
         whole = self.robot.answer.keys() <= self.given.keys() if len(self.robot.answer) > 1 else self.has()
         return self.part.ending is not None or whole

@@ -21,7 +21,7 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     or the last one, is wrong.
     """
     own, client, one, other = (f"/{names.pop()}" for _ in range(4))
-    word, second, third = random.sample(WORDS, 3)
+    (before, word, after), (second, third) = sorted((words := random.sample(WORDS, 5))[:3]), words[3:]
     asked = f"/{word}_{second}"
     shorter, longer = shuffled(random, (f"/{word}", f"{asked}_{third}"))
     action = {asked: type_name}
@@ -33,7 +33,10 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     nodes = shuffled(random, list(beside.items()))
     if kind == NONE:
         return Robot(asked=(asked,), nodes=dict(nodes))
-    nodes.insert(random.choice((1, 2)), (own, {"publishes": action}))
+    # Its list is sorted: a subject that looks at the first action of a node only, or at the last one, is wrong.
+    another = next(one for one in TYPES if one != type_name)
+    serves = {f"/{before}": another, **action, f"/{after}": another}
+    nodes.insert(random.choice((1, 2)), (own, {"publishes": serves}))
     late = (own, nodes[-1][0]) if kind == LATE else ()
     return Robot(asked=(asked,), answer={"node": own, "type": type_name}, nodes=dict(nodes), late=late)
 
