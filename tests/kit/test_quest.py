@@ -84,6 +84,17 @@ def test_a_type_may_be_written_as_python_imports_it() -> None:
     assert not Search(part(robot, "{'topic': 'go', 'type': 'std_msgs/msg/Twist'}")).has("type")
 
 
+@pytest.mark.parametrize(
+    ("said", "is_right"), [("/nova/base", True), ("nova/base", True), ("base", True), ("nova", False)]
+)
+def test_a_node_may_be_named_without_its_namespace(said: str, is_right: bool) -> None:
+    nodes = {"/nova/base": {"subscribes": {"/nova/go": TWIST}}}
+    robot = Robot(answer={"robot": "/nova/base", "topic": "/nova/go"}, nodes=nodes)
+    search = Search(part(robot, f"{{'robot': '{said}', 'topic': 'go'}}"))
+    assert search.has("robot") is is_right
+    assert not search.has("topic")
+
+
 OPEN = Robot(
     answer={"name": "/mia/open"}, services={"/mia/open": TRIGGER, "/mia/open_all": TRIGGER, "/z": TRIGGER}
 )

@@ -113,12 +113,14 @@ class Search:
     def has(self, *keys: str) -> bool:
         """Return True if the answer is right for these keys; without keys, for all of them.
 
-        The first slash of a name may be missing, and a type may be written as Python imports it.
+        The first slash of a name and a node's namespace may be missing. A type may be written as Python imports it.
         """
         right = self.robot.answer
-        return bool(right) and all(
-            _plain(self.given.get(key, "")) == _plain(right[key]) for key in keys or right
-        )
+        return bool(right) and all(self._is_named(right[key], self.given.get(key, "")) for key in keys or right)
+
+    def _is_named(self, right: str, given: str) -> bool:
+        bare = right.rpartition("/")[2] if right in self.robot.nodes else ""
+        return _plain(given) in (_plain(right), bare or _plain(right))
 
     @property
     def has_answered(self) -> bool:
@@ -192,10 +194,10 @@ class Search:
 
     @property
     def gave_up_at_once(self) -> bool:
-        """True if the subject ended much too early, without an answer."""
+        """True if the subject ended much too early, and neither named nor returned anything."""
         ending, node = self.part.ending, self.since_it_appeared.first("interface")
         early = ending is not None and (node is None or ending.t < node.t + IMPATIENT)
-        return early and not self.given
+        return early and not self.given and self.part.returned in (None, "None")
 
     @property
     def in_words(self) -> str:

@@ -24,11 +24,10 @@ def stays(evidence: Evidence) -> Finding:
     )
 
 
-JUDGED = lamp.LAMP().exercise()
 EXERCISE = replace(
-    JUDGED,
+    lamp.EXERCISE,
     id="bugs_1._door",
-    criteria=[*JUDGED.criteria, Criterion("hall", "Stays in the namespace /hall", 2.0, stays)],
+    criteria=[*lamp.EXERCISE.criteria, Criterion("hall", "Stays in the namespace /hall", 2.0, stays)],
     text={},
     counts={},
 )

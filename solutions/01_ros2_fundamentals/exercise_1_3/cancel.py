@@ -43,9 +43,9 @@ ENDS = "says `canceled`, `succeeded` or `aborted`, or `status` and the number, a
 
 
 def numbers(feedbacks: int) -> list[int]:
-    """Return the sequence that the server has after so many feedback messages."""
+    """Return the sequence that the server has after so many feedback messages; the first one brings two numbers."""
     sequence = [0, 1]
-    for _ in range(feedbacks):
+    for _ in range(feedbacks + 1 if feedbacks else 0):
         sequence.append(sequence[-1] + sequence[-2])
     return sequence
 

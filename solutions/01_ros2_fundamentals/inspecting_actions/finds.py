@@ -3,7 +3,7 @@
 from random import Random
 from typing import Any
 
-from autograder.kit import Quest, Robot, shuffled
+from autograder.kit import Quest, Robot, drawn_until, shuffled
 
 TYPES = ("small_robot_interfaces/action/WalkTo", "my_robot_interfaces/action/Fibonacci")
 NAMES = (
@@ -24,19 +24,19 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     (before, word, after), (second, third) = sorted((words := random.sample(WORDS, 5))[:3]), words[3:]
     asked = f"/{word}_{second}"
     shorter, longer = shuffled(random, (f"/{word}", f"{asked}_{third}"))
-    action = {asked: type_name}
+    action, another = {asked: type_name}, next(one for one in TYPES if one != type_name)
+    # By mistake, a client has another type than the server, and comes first: only the server's own list is the answer.
     beside: dict[str, dict[str, Any]] = {
-        client: {"subscribes": action},
+        client: {"subscribes": {asked: another}},
         one: {"publishes": {shorter: random.choice(TYPES)}},
         other: {"publishes": {longer: random.choice(TYPES)}, "subscribes": action},
     }
-    nodes = shuffled(random, list(beside.items()))
+    nodes = drawn_until(lambda: shuffled(random, list(beside.items())), lambda nodes: nodes[2][0] != client)
     if kind == NONE:
         return Robot(asked=(asked,), nodes=dict(nodes))
     # Its list is sorted: a subject that looks at the first action of a node only, or at the last one, is wrong.
-    another = next(one for one in TYPES if one != type_name)
     serves = {f"/{before}": another, **action, f"/{after}": another}
-    nodes.insert(random.choice((1, 2)), (own, {"publishes": serves}))
+    nodes.insert(2, (own, {"publishes": serves}))
     late = (own, nodes[-1][0]) if kind == LATE else ()
     return Robot(asked=(asked,), answer={"node": own, "type": type_name}, nodes=dict(nodes), late=late)
 
