@@ -46,8 +46,8 @@ def row(
 
 
 def questions(random: Random) -> list[To | float]:
-    """Return rows of one question, of two and of three, in drawn order."""
+    """Return rows of one question, of two and of three, in drawn order. A number comes again in another row."""
     all_steps = shuffled(random, [(random.choice((0, 1)),), random.choice(TURNED), random.choice(TANGLED)])
-    numbers = random.sample(range(1, 100), 6)
-    rows = [row(random, "/ask", [numbers.pop() for _ in steps], steps) for steps in all_steps]
+    numbers = random.sample(range(1, 100), 3)
+    rows = [row(random, "/ask", random.sample(numbers, len(steps)), steps) for steps in all_steps]
     return [step for each in rows for step in each]
