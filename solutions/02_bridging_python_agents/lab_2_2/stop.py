@@ -1,9 +1,17 @@
 """Lab 2.2, a red button: nothing moves while it is pressed, and only a new command moves the robot after that."""
 
-from random import Random
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 from autograder.kit import SameAsSolution, To, drawn_until, shuffled
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit import Bench
+    from autograder.kit.oracle.outputs import Output
+    from autograder.kit.oracle.steps import Turn
 
 
 def command(random: Random) -> To:
@@ -31,8 +39,9 @@ class RedButton(SameAsSolution):
     The robot stands already, so a right answer may send one more Twist or none.
     """
 
-    def _values(self, *of: Any) -> list[Any]:
-        return [] if of[1].name == "/cmd_vel" and of[2].step is AGAIN else super()._values(*of)
+    def _values(self, bench: Bench, output: Output, turn: Turn, following: Turn | None = None) -> list[Any]:
+        is_free = output.name == "/cmd_vel" and turn.step is AGAIN
+        return [] if is_free else super()._values(bench, output, turn, following)
 
 
 def steps(random: Random) -> list[To | float]:
