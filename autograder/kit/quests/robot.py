@@ -116,7 +116,9 @@ class Search:
         The first slash of a name and a node's namespace may be missing. A type may be written as Python imports it.
         """
         right = self.robot.answer
-        return bool(right) and all(self._is_named(right[key], self.given.get(key, "")) for key in keys or right)
+        return bool(right) and all(
+            self._is_named(right[key], self.given.get(key, "")) for key in keys or right
+        )
 
     def _is_named(self, right: str, given: str) -> bool:
         bare = right.rpartition("/")[2] if right in self.robot.nodes else ""
