@@ -59,11 +59,17 @@ def blind() -> str:
         r"the inputs of the other (\w+) did not show what is wrong, and (\w+) of them are rejected since",
         ACCURACY,
     )
+    rare = found(
+        r"On (\S+) (\d+) more, whose mistakes show only in rare cases, .*? and (\d+) wrong ones, "
+        r"of which (\w+) are rejected",
+        ACCURACY,
+    )
     written, lost, mistaken = map(number, right.groups())
     return (
-        f"Of {written - mistaken} right ones {IN_WORDS[lost - mistaken]} lost points (their tasks now say which words "
-        f"count); of {wrong[1]} wrong ones none passed. On {later[1]}, {later[3]} of {later[2]} more wrong ones "
-        f"passed: {later[4]} do what their tasks ask or leave open, {later[6]} others are rejected since."
+        f"Of {written - mistaken} right ones {IN_WORDS[lost - mistaken]} lost points; "
+        f"of {wrong[1]} wrong ones none passed. On {later[1]}, {later[3]} of {later[2]} more wrong ones "
+        f"passed: {later[4]} do what their tasks ask or leave open, {later[6]} others are rejected since. "
+        f"On {rare[1]}, {rare[3]} of {rare[2]} with mistakes in rare cases passed; {rare[4]} are rejected since."
     )
 
 
