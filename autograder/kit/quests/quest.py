@@ -21,7 +21,7 @@ from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON
 from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS, what_and_where
 from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.model import Advice, Finding, Mistake, card_words, mistake
 from autograder.kit.quests.robot import Robot, Search
@@ -288,8 +288,7 @@ def _finding(search: Search, keys: Sequence[str]) -> Finding:
     if search.has(*keys) and not search.returned:
         return Finding(False, expected, "named it, and did not return it")
     if search.has(*keys) and search.part.ending is not None and search.part.ending.name == "raised":
-        raised = search.part.traceback.rstrip().rpartition("\n")[2]
-        return Finding(False, expected, f"named it, and then raised {raised}")
+        return Finding(False, expected, f"named it, and then raised {what_and_where(search.part.traceback)}")
     said = ", ".join(given.get(key, "nothing") for key in keys) if given else search.in_words
     return Finding(search.has(*keys), expected, said)
 

@@ -25,7 +25,7 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     asked = f"/{word}_{second}"
     shorter, longer = shuffled(random, (f"/{word}", f"{asked}_{third}"))
     action, another = {asked: type_name}, next(one for one in TYPES if one != type_name)
-    # By mistake, a client has another type than the server, and comes first: only the server's own list is the answer.
+    # By mistake, a client has the wrong type, and is made before the server: only the server's own list is the answer.
     beside: dict[str, dict[str, Any]] = {
         client: {"subscribes": {asked: another}},
         one: {"publishes": {shorter: random.choice(TYPES)}},
@@ -34,7 +34,7 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     nodes = drawn_until(lambda: shuffled(random, list(beside.items())), lambda nodes: nodes[2][0] != client)
     if kind == NONE:
         return Robot(asked=(asked,), nodes=dict(nodes))
-    # Its list is sorted: a subject that looks at the first action of a node only, or at the last one, is wrong.
+    # The list of a node is sorted: a subject that looks only at the first or last action of a node is wrong.
     serves = {f"/{before}": another, **action, f"/{after}": another}
     nodes.insert(2, (own, {"publishes": serves}))
     late = (own, nodes[-1][0]) if kind == LATE else ()

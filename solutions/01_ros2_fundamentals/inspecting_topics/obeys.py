@@ -24,7 +24,7 @@ def robot(random: Random, names: list[str], kind: str) -> Robot:
     subscription, or the last one, is wrong.
     """
     own, *others = (f"/{names.pop()}" for _ in range(4))
-    # Who asks about a node has to give the node's own namespace: the node that is made first has one.
+    # A call about a node needs the node's own namespace: the node that is made first has one, and so has one robot.
     others[0] = f"/{random.choice(NAMES)}{others[0]}"
     own = f"/{random.choice(NAMES)}{own}" if kind == FIRST else own
     topics = map("/{}/{}".format, random.sample(NAMES, 8), random.sample(WORDS, 8))
