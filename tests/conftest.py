@@ -193,7 +193,7 @@ def _left_out(config: pytest.Config, items: list[pytest.Item]) -> set[str]:
         return set(ids) - tiers.smoke(ids)
     if chosen is None or chosen.because:
         return tiers.left_to_all(ids, due)
-    left = tiers.left_to_all(ids, [])
+    left = tiers.never_drawn(ids)
     reaching = [one for one in ids if one not in left and chosen.includes(one)]
     return set(ids) - (set(reaching) - tiers.too_many(reaching)) - tiers.smoke(ids)
 

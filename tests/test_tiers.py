@@ -32,13 +32,23 @@ def test_no_draw_is_spent_on_what_is_left_to_all(monkeypatch: pytest.MonkeyPatch
     assert set(IDS[:9]) - tiers.left_to_all(IDS, []) == {IDS[8]}
 
 
+def test_the_short_tier_runs_fewer_of_what_is_drawn_and_all_that_is_due(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(tiers, "SHORT", (tiers.Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1),))
+    assert len(set(IDS) - tiers.never_drawn(IDS)) == 2
+    assert len(set(IDS) - tiers.left_to_all(IDS, [])) == 1
+    assert not tiers.left_to_all(IDS, IDS)
+
+
 def test_what_is_due_runs_whatever_is_drawn() -> None:
     assert not tiers.left_to_all(IDS, IDS)
     assert len(tiers.left_to_all(IDS, IDS[:9])) == 8
 
 
 def test_every_name_in_the_lists_is_a_tests(request: pytest.FixtureRequest) -> None:
-    names = [*tiers.NIGHTLY, *(draw.tests for draw in (*tiers.DRAWS, *tiers.SMOKE, *tiers.LONG))]
+    draws = (*tiers.DRAWS, *tiers.SHORT, *tiers.SMOKE, *tiers.LONG)
+    names = [*tiers.NIGHTLY, *(one for draw in draws for one in draw.beginnings)]
     root = Path(__file__).parents[1]
     missing = [name for name in names if not (root / name.partition("::")[0]).exists()]
     functions = [name.partition("::") for name in names if "::" in name]

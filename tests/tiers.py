@@ -1,7 +1,8 @@
 """The tiers: what ``./course test`` runs, and with ``--changed``, ``--smoke`` and ``--all``. Decided here alone.
 
-A test in ``NIGHTLY`` is left to ``--all``. Of those in ``DRAWS`` some run, which the commit decides, and all that are
-marked ``due``: something that they depend on has changed. ``--changed`` runs those of the short tier that reach a
+A test in ``NIGHTLY`` is left to ``--all``. Of those in ``DRAWS`` some run, which the commit decides, of these the short
+tier runs no more than ``SHORT`` says, and it runs all that are marked ``due``: something that they depend on has
+changed. ``--changed`` runs those of the short tier that reach a
 change (``tests/reach/``), of the longest of them only as many as ``LONG`` says, and those of ``SMOKE``, which
 ``--smoke`` runs alone. A contributor who names files or folders of tests gets all of them.
 """
@@ -107,14 +108,23 @@ class Draw:
     """Tests of which some run, of those that no line above leaves to ``--all``.
 
     Attributes:
-        tests: The beginning of their ids.
+        tests: The beginning of their ids, or several.
         number: How many of each group.
         group: What ends the name of a group in an id; all are one group where empty.
     """
 
-    tests: str
+    tests: str | tuple[str, ...]
     number: int
     group: str = ""
+
+    @property
+    def beginnings(self) -> tuple[str, ...]:
+        """The beginnings of their ids."""
+        return (self.tests,) if isinstance(self.tests, str) else self.tests
+
+    def has(self, test: str) -> bool:
+        """Whether the test with this id is one of them."""
+        return test.startswith(self.beginnings)
 
 
 _LIVE = "tests/judge/test_bank.py::test_answer_is_judged_right"
@@ -189,6 +199,12 @@ SMOKE = (
     *(Draw(f"tests/test_{name}.py::", 1000) for name in ("docs", "english", "imports", "size", "tiers")),
 )
 """Tests that run whatever has changed."""
+SHORT = (
+    # Each of the two thousand answers is judged in this tier from what was seen of it, and if its scenario has changed
+    # then itself: these show that what is judged itself still comes to what was kept.
+    Draw(f"{_LIVE}[", 40),
+)
+"""Of what is drawn, the short tier runs no more than so many; ``--changed`` may take each that reaches a change."""
 LONG = (
     Draw(f"{_LIVE}[", 8),
     Draw("tests/judge/test_missing_events.py::", 8),
@@ -237,22 +253,24 @@ def left_to_all(ids: Sequence[str], due: Iterable[str]) -> set[str]:
         ids: Of all tests.
         due: Of those that run whatever is drawn.
     """
+    left = never_drawn(ids)
+    return (left | _not_drawn(SHORT, [one for one in ids if one not in left])) - set(due)
+
+
+def never_drawn(ids: Sequence[str]) -> set[str]:
+    """The ids of the tests that only ``--all`` runs at this commit, whatever has changed."""
     left = {one for one in ids if one.startswith(NIGHTLY)}
-    return (left | _not_drawn(DRAWS, [one for one in ids if one not in left])) - set(due)
+    return left | _not_drawn(DRAWS, [one for one in ids if one not in left])
 
 
 def smoke(ids: Sequence[str]) -> set[str]:
     """The ids of the tests that run whatever has changed."""
-    return {
-        one
-        for draw in SMOKE
-        for one in drawn((one for one in ids if one.startswith(draw.tests)), draw.number)
-    }
+    return {one for draw in SMOKE for one in drawn((one for one in ids if draw.has(one)), draw.number)}
 
 
 def is_smoke(path: str) -> bool:
     """Return whether some test of a file runs whatever has changed."""
-    return any(draw.tests.startswith(f"{path}::") for draw in SMOKE)
+    return any(one.startswith(f"{path}::") for draw in SMOKE for one in draw.beginnings)
 
 
 def too_many(ids: Sequence[str]) -> set[str]:
@@ -265,8 +283,8 @@ def _not_drawn(draws: Iterable[Draw], ids: Iterable[str]) -> set[str]:
     for draw in draws:
         groups: dict[str, list[str]] = defaultdict(list)
         for one in ids:
-            if one.startswith(draw.tests):
-                rest = one.removeprefix(draw.tests)
+            if beginning := next((each for each in draw.beginnings if one.startswith(each)), ""):
+                rest = one.removeprefix(beginning)
                 groups[rest.partition(draw.group)[0] if draw.group else ""].append(one)
         for group in groups.values():
             left |= set(group) - drawn(group, draw.number)
