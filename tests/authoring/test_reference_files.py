@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, cast
@@ -12,6 +13,7 @@ import pytest
 
 from autograder import exercises
 from autograder.authoring import reference_files
+from autograder.authoring.answer_bank import answers
 from autograder.kit.recipes.own_scenario import Met
 from autograder.verdict import CriterionResult
 from tests.cases import cases
@@ -28,8 +30,11 @@ OTHER_INPUTS = "random.sample(range(101, 999), 2)"
 CHANGED = evidence.exercises_of_another_bench()
 LAUNCHED = "project_2.whole"
 """Its programs ask when they have found each other, and until then the robot has waited for longer or shorter."""
+RUNS = Counter(answer.exercise for answer in answers() if answer.advice)
+"""The wrong answers of an exercise that are recorded beside its solution, five seconds of a processor each."""
+MANY = 2
 EXERCISES = [
-    due(exercise_id, exercise_id, exercise_id in CHANGED)
+    due(exercise_id, "many-" * (RUNS[exercise_id] > MANY) + exercise_id, exercise_id in CHANGED)
     for exercise_id in exercises.all_ids()
     if exercise_id != LAUNCHED
 ]
