@@ -2,9 +2,9 @@
 
 A test in ``NIGHTLY`` is left to ``--all``. Of those in ``DRAWS`` some run, which the commit decides, of these the short
 tier runs no more than ``SHORT`` says, and it runs all that are marked ``due``: something that they depend on has
-changed. ``--changed`` runs those of the short tier that reach a
-change (``tests/reach/``), of the longest of them only as many as ``LONG`` says, and those of ``SMOKE``, which
-``--smoke`` runs alone. A contributor who names files or folders of tests gets all of them.
+changed. ``--changed`` runs those that are drawn and reach a change (``tests/reach/``), of the longest of them only as
+many as ``LONG`` says, and those of ``SMOKE``, which ``--smoke`` runs alone. A contributor who names files or folders of
+tests gets all of them.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ NIGHTLY = (
     # The longest exercise at each missing event, a hundred seconds; the others stay.
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[bugs_2.counting_clock]",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.
-    # So are those that record many wrong answers, too: as many runs of a judge, up to eighty seconds of a processor. The
-    # others take the same way with one, and each wrong answer of these is judged from what was seen of it (test_bank).
+    # And recording many wrong answers, each in a run of a judge: up to eighty seconds of a processor. The others take
+    # the same way with one or two, and test_bank.py judges each wrong answer from what was seen of it.
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[many-",
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_2.programs]",
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_3.programs]",
@@ -147,7 +147,7 @@ DRAWS = (
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[", 1),
-    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 2),
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw(
         "tests/workspaces/builds/test_plain_packages.py::test_the_files_of_each_package_of_the_bank_are_those_of_colcon[",
@@ -160,7 +160,22 @@ DRAWS = (
     Draw("tests/notebook/checking/test_starts_in_two_phases.py::test_a_node_that_can_make_nothing_more", 1),
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_works_in_its_constructor", 1),
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_is_wrong_there_is_told", 1),
-    Draw("tests/browser/test_restart.py::", 1),
+    # What JupyterLab shows, beside the first minutes, which are always tried: each starts a server and a browser.
+    Draw(
+        tuple(
+            f"tests/browser/test_{name}.py::"
+            for name in ("restart", "terminals", "validate", "verdict_in_view")
+        ),
+        1,
+    ),
+    # Interfaces that are generated and compiled for who needs them: by the wheel in an empty environment, in a workspace.
+    Draw(
+        (
+            "tests/test_wheel.py::test_an_interface_of_ones_own_builds_itself",
+            "tests/workspaces/builds/test_colcon.py::test_of_interfaces_all_is_built_that_a_node_needs",
+        ),
+        1,
+    ),
     Draw("tests/environment/ros2_command/test_graph.py::", 4),
     Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),
     Draw("tests/grading/test_fail_closed.py::test_a_disk_that_is_full_at_any_moment[", 4),
@@ -206,6 +221,8 @@ SHORT = (
     # Each of the two thousand answers is judged in this tier from what was seen of it, and if its scenario has changed
     # then itself: these show that what is judged itself still comes to what was kept.
     Draw(f"{_LIVE}[", 40),
+    # Each family of attacks is drawn from at every second commit. The box, layer by layer, is tested in tests/boxes.
+    Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 6),
 )
 """Of what is drawn, the short tier runs no more than so many; ``--changed`` may take each that reaches a change."""
 LONG = (

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 
-FEW = 4
-"""Packages of an exercise that are built twice: other ones in another commit."""
+FEW, FEWER = 4, 1
+"""Packages of an exercise that are built twice, and in the short tier: other ones in another commit."""
 
 
 def job_of(workspace: Path, packages: Sequence[Package] = ()) -> BuildJob:
@@ -87,8 +87,13 @@ def test_another_text_of_a_module_needs_no_run_of_colcon(workspace: Path, runs: 
 @pytest.mark.slow
 @pytest.mark.parametrize("exercise", BUILT)
 def test_the_files_of_each_package_of_the_bank_are_those_of_colcon(
-    exercise: str, tmp_path: Path, empty_cache: Path, monkeypatch: pytest.MonkeyPatch
+    exercise: str,
+    tmp_path: Path,
+    empty_cache: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    pytestconfig: pytest.Config,
 ) -> None:
+    few = FEW if pytestconfig.option.all else FEWER
     workspaces: dict[str, Path] = {}
     for number, answer in enumerate(answers([exercise])):
         folder = tmp_path / str(number)
@@ -99,7 +104,7 @@ def test_the_files_of_each_package_of_the_bank_are_those_of_colcon(
         if python and (parts := split(job := job_of(found.workspace, python))) != [job]:
             workspaces.setdefault(parts[-1].tree.digest, found.workspace)
     assert workspaces
-    for workspace in (workspaces[digest] for digest in drawn(workspaces, FEW)):
+    for workspace in (workspaces[digest] for digest in drawn(workspaces, few)):
         for package in describe_workspace(workspace).packages:
             if package.build_type != "ament_python":
                 shutil.rmtree(package.folder)
