@@ -168,7 +168,7 @@ DRAWS = (
         ),
         1,
     ),
-    # Interfaces that are generated and compiled for who needs them: by the wheel in an empty environment, in a workspace.
+    # Interfaces that are generated and compiled: by the wheel in an empty environment, and in a workspace.
     Draw(
         (
             "tests/test_wheel.py::test_an_interface_of_ones_own_builds_itself",

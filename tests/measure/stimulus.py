@@ -28,8 +28,18 @@ STARTS = tuple(
 """The modules that start a subject, whatever its kind is."""
 
 
-@functools.cache
+KNOWN: dict[str, str] = {}
+"""The digests that this process has made, or was told by the one that started it: all of them take seconds."""
+
+
 def digest(exercise_id: str) -> str:
+    """Return the digest of an exercise, made once; for the errors see :func:`new_digest`."""
+    if exercise_id not in KNOWN:
+        KNOWN[exercise_id] = new_digest(exercise_id)
+    return KNOWN[exercise_id]
+
+
+def new_digest(exercise_id: str) -> str:
     """Return the SHA-256 of everything that the evidence of an exercise's answers depends on, without the answers.
 
     Raises:

@@ -111,12 +111,12 @@ def test_nothing_is_written_where_nothing_is_new(keep: Path) -> None:
 
 
 def test_evidence_depends_on_the_scenario_and_not_on_what_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = stimulus.digest.__wrapped__(ID)
+    before = stimulus.new_digest(ID)
     exercise = exercises.get(ID)
     monkeypatch.setattr(exercises, "get", lambda _: replace(exercise, criteria=(), mistakes=(), title="?"))
-    assert stimulus.digest.__wrapped__(ID) == before
+    assert stimulus.new_digest(ID) == before
     monkeypatch.setattr(publisher, "PERSISTENT", publisher.PERSISTENT + 1)
-    assert stimulus.digest.__wrapped__(ID) != before
+    assert stimulus.new_digest(ID) != before
 
 
 def test_the_digest_is_the_same_in_each_process() -> None:
