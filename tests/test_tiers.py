@@ -41,6 +41,14 @@ def test_the_short_tier_runs_fewer_of_what_is_drawn_and_all_that_is_due(
     assert not tiers.left_to_all(IDS, IDS)
 
 
+def test_tests_that_share_what_is_made_are_drawn_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tiers, "SHORT", ())
+    monkeypatch.setattr(tiers, "DRAWS", (tiers.Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1, whole=True),))
+    kept = set(IDS) - tiers.left_to_all(IDS, [])
+    assert len(kept) == 9
+    assert len({one.partition("/right")[0] for one in kept}) == 1
+
+
 def test_what_is_due_runs_whatever_is_drawn() -> None:
     assert not tiers.left_to_all(IDS, IDS)
     assert len(tiers.left_to_all(IDS, IDS[:9])) == 8
