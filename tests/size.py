@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import functools
 import io
 import subprocess
 import tarfile
@@ -58,6 +59,7 @@ class Module:
     foreign: frozenset[str]
 
 
+@functools.cache
 def module_of(text: str) -> Module:
     """Return what counts in the text of a Python file."""
     tree = ast.parse(text)

@@ -62,7 +62,8 @@ LEFT = {"lab_2_2.finite": ["endpoints: no criterion asks for /stop"]}
 
 
 def test_nothing_is_left_to_do_of_the_courses_own_exercises(monkeypatch: pytest.MonkeyPatch) -> None:
-    # The exercises of a lab share its text.
+    # The exercises of a lab share its text, which is read once.
+    monkeypatch.setattr(exercise_faults, "named_cells", functools.cache(exercise_faults.named_cells))
     of_a_lab = functools.cache(lambda master: list(broken_rules(master)))
     monkeypatch.setattr(exercise_faults, "broken_rules", of_a_lab)
     left = {
