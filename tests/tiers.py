@@ -144,12 +144,12 @@ BUILT = (
 )
 """Exercises whose answers are built or launched: seven seconds of a processor each, where others take two."""
 DRAWS = (
-    Draw("tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[", 5),
+    Draw("tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[", 12),
     Draw(f"{_LIVE}[", 1, "/"),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[", 1),
-    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 2),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw(
         "tests/workspaces/builds/test_plain_packages.py::test_the_files_of_each_package_of_the_bank_are_those_of_colcon[",
@@ -162,15 +162,8 @@ DRAWS = (
     Draw("tests/notebook/checking/test_starts_in_two_phases.py::test_a_node_that_can_make_nothing_more", 1),
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_works_in_its_constructor", 1),
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_is_wrong_there_is_told", 1),
-    # What JupyterLab shows, beside the first minutes, which are always tried: each starts a server and a browser.
-    Draw(
-        tuple(
-            f"tests/browser/test_{name}.py::"
-            for name in ("restart", "terminals", "validate", "verdict_in_view")
-        ),
-        1,
-    ),
-    Draw("tests/environment/ros2_command/test_graph.py::", 2),
+    Draw("tests/browser/test_restart.py::", 1),
+    Draw("tests/environment/ros2_command/test_graph.py::", 4),
     Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),
     Draw("tests/grading/test_fail_closed.py::test_a_disk_that_is_full_at_any_moment[", 4),
     Draw(
@@ -186,6 +179,54 @@ DRAWS = (
         1,
     ),
     Draw("tests/authoring/test_notebooks.py::test_master_and_chapter_show_what_they_have_to[", 2),
+)
+
+
+SMOKE = (
+    # An answer to an exercise of each role, judged itself.
+    *(
+        Draw(f"{_LIVE}[{exercise}/right/", 1)
+        for exercise in ("lab_1_2.talker", "lab_1_2.listener", "lab_1_3.server", "lab_1_3.client")
+    ),
+    *(
+        Draw(f"{_LIVE}[{exercise}/right/", 1)
+        for exercise in ("lab_1_4.server", "lab_1_4.client", "exercise_1_1.package")
+    ),
+    # An attack on each layer of the box, and a class of three notebooks.
+    *(
+        Draw(f"tests/attacks/test_attacks.py::test_it_is_defeated[{family}-", 1)
+        for family in ("forging", "socket", "reading", "writing", "breaking", "network", "shadowing")
+    ),
+    Draw("tests/attacks/test_attacks.py::test_an_honest_student_has_what_was_earned", 9),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_gradebook_csv_and_feedback_say_the_same", 1),
+    # What reads the whole repository, or a page of which any command may be typed.
+    *(Draw(f"tests/test_{name}.py::", 1000) for name in ("docs", "english", "imports", "size", "tiers")),
+)
+"""Tests that run whatever has changed."""
+SHORT = (
+    # Each of the two thousand answers is judged in this tier from what was seen of it, and if its scenario has changed
+    # then itself: these show that what is judged itself still comes to what was kept.
+    Draw(f"{_LIVE}[", 32),
+    # Of the families of attacks: eleven take turns. The box, layer by layer, is tested in tests/boxes.
+    Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 5),
+    # Exercise by exercise: one that has changed is reached by `--changed`.
+    Draw("tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[", 25),
+    Draw("tests/appeals/test_appeal_file.py::test_no_file_takes_much_memory[", 2),
+    Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1),
+    Draw("tests/appeals/test_every_exercise.py::test_an_appeal_file_brings_the_same_verdict_again[", 20),
+    Draw("tests/exercises/test_unsolved.py::test_doing_nothing_earns_nothing[", 60),
+    Draw("tests/exercises/test_unsolved.py::test_of_a_subject_that_does_nothing", 30),
+    Draw("tests/exercises/test_unsolved.py::test_each_criterion_and_mistake_can_look_at_any_evidence[", 30),
+    # What JupyterLab shows: each starts a server, kernels and a browser, 25 seconds of a processor.
+    Draw(
+        tuple(
+            f"tests/browser/test_{name}.py::"
+            for name in ("first_minutes", "restart", "terminals", "validate", "verdict_in_view")
+        ),
+        1,
+        whole=True,
+    ),
     # Whole ways with programs of their own, in turn. Below each is said what of it the short tier always tests.
     Draw(
         (
@@ -201,7 +242,7 @@ DRAWS = (
             # Ended at any write, within the process: test_where_it_goes.py.
             "tests/grading/day/test_killed_at_random.py::test_collect_is_ended_and_goes_on",
         ),
-        2,
+        1,
         whole=True,
     ),
     # Builds by colcon, beside the first, the failing one and the one of a changed text, which always run.
@@ -217,7 +258,7 @@ DRAWS = (
             "tests/environment/ros2_command/test_pkg_create.py::test_colcon_builds_what_was_created",
             "tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks",
         ),
-        3,
+        2,
         whole=True,
     ),
     # A class graded by a command or by nbgrader, beside the commands of test_guide.py and the sample class.
@@ -232,7 +273,7 @@ DRAWS = (
             "tests/grading/day/test_own_assignments.py::test_tests_stand_beside",
             "tests/masters/test_equals_nbgrader.py::test_the_formgrader_gives_the_same_bytes",
         ),
-        3,
+        2,
         whole=True,
     ),
     # Pictures that nodes move in a kernel of its own: what is drawn is tested in tests/robot and tests/notebook.
@@ -277,48 +318,22 @@ DRAWS = (
     ),
     Draw("tests/boxes/test_limits.py::test_a_judge_has_a_limit_of_memory[", 1),
     Draw("tests/kit/test_mission_worlds.py::", 13),
-    # One by one for each exercise or case, of which all take the same way.
-    Draw("tests/grading/collecting/test_collect_cases.py::test_collect[", 130),
+    # Cases, or seeds, that all take the same way.
+    Draw("tests/grading/collecting/test_collect_cases.py::test_collect[", 90),
     Draw("tests/grading/collecting/test_forged_names.py::test_no_name_that_somebody_chooses", 12),
+    Draw("tests/grading/collecting/test_where_it_goes.py::test_whatever_is_collected_in_any_order", 1),
+    Draw("tests/grading/collecting/test_cells_of_two_labs.py::test_a_notebook_with_the_cells_of_two_labs", 3),
+    Draw("tests/grading/collecting/test_limits_of_unpacking.py::test_what_a_desk_writes_is_not_believed[", 3),
+    Draw("tests/grading/new_classes/test_changing_students.py::test_wherever_it_is_killed", 5),
+    Draw("tests/grading/reporting/test_filled_lists.py::test_what_an_export_changes_in_a_list[", 10),
+    Draw("tests/environment/ros2_command/test_launch_processes.py::test_what_a_launch_says[", 7),
+    Draw("tests/authoring/mutants/test_engine.py::test_an_operator_makes_its_mistake[", 10),
+    Draw("tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[", 5),
+    Draw("tests/environment/ros2_command/test_graph.py::", 2),
+    Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 1),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 2),
 )
-
-
-SMOKE = (
-    # An answer to an exercise of each role, judged itself.
-    *(
-        Draw(f"{_LIVE}[{exercise}/right/", 1)
-        for exercise in ("lab_1_2.talker", "lab_1_2.listener", "lab_1_3.server", "lab_1_3.client")
-    ),
-    *(
-        Draw(f"{_LIVE}[{exercise}/right/", 1)
-        for exercise in ("lab_1_4.server", "lab_1_4.client", "exercise_1_1.package")
-    ),
-    # An attack on each layer of the box, and a class of three notebooks.
-    *(
-        Draw(f"tests/attacks/test_attacks.py::test_it_is_defeated[{family}-", 1)
-        for family in ("forging", "socket", "reading", "writing", "breaking", "network", "shadowing")
-    ),
-    Draw("tests/attacks/test_attacks.py::test_an_honest_student_has_what_was_earned", 9),
-    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
-    Draw("tests/grading/new_classes/test_sample_class.py::test_gradebook_csv_and_feedback_say_the_same", 1),
-    # What reads the whole repository, or a page of which any command may be typed.
-    *(Draw(f"tests/test_{name}.py::", 1000) for name in ("docs", "english", "imports", "size", "tiers")),
-)
-"""Tests that run whatever has changed."""
-SHORT = (
-    # Each of the two thousand answers is judged in this tier from what was seen of it, and if its scenario has changed
-    # then itself: these show that what is judged itself still comes to what was kept.
-    Draw(f"{_LIVE}[", 40),
-    # Each family of attacks is drawn from at every second commit. The box, layer by layer, is tested in tests/boxes.
-    Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 6),
-    # Exercise by exercise: one that has changed is reached by `--changed`.
-    Draw("tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[", 25),
-    Draw("tests/appeals/test_every_exercise.py::test_an_appeal_file_brings_the_same_verdict_again[", 20),
-    Draw("tests/exercises/test_unsolved.py::test_doing_nothing_earns_nothing[", 60),
-    Draw("tests/exercises/test_unsolved.py::test_of_a_subject_that_does_nothing", 30),
-    Draw("tests/exercises/test_unsolved.py::test_each_criterion_and_mistake_can_look_at_any_evidence[", 30),
-)
-"""Of what is drawn, the short tier runs no more than so many; ``--changed`` may take each that reaches a change."""
+"""Of what is left, the short tier runs no more than so many; ``--changed`` takes each that reaches a change."""
 LONG = (
     Draw(f"{_LIVE}[", 8),
     Draw("tests/judge/test_missing_events.py::", 8),

@@ -15,6 +15,7 @@ from autograder.authoring.answer_bank import answers
 from autograder.authoring.exercise_faults import broken_rules, still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.judge import evidence_files
+from autograder.masters.source_notebooks import named_cells
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ LEFT = {"lab_2_2.finite": ["endpoints: no criterion asks for /stop"]}
 
 def test_nothing_is_left_to_do_of_the_courses_own_exercises(monkeypatch: pytest.MonkeyPatch) -> None:
     # The exercises of a lab share its text, which is read once.
-    monkeypatch.setattr(exercise_faults, "named_cells", functools.cache(exercise_faults.named_cells))
+    monkeypatch.setattr(exercise_faults, "named_cells", functools.cache(named_cells))
     of_a_lab = functools.cache(lambda master: list(broken_rules(master)))
     monkeypatch.setattr(exercise_faults, "broken_rules", of_a_lab)
     left = {
