@@ -28,7 +28,8 @@ def logs(evidence: Evidence) -> Finding:
     )
 
 
-JUDGED = lamp.LAMP().exercise()
+# The first answer comes at once, so that a callback that waits for it in vain is proven to wait.
+JUDGED = lamp.LAMP(late={"/lamp": lambda random: [0.0, *lamp.delays(random)[1:]]}).exercise()
 EXERCISE = replace(
     JUDGED,
     id="bugs_2._lamp",

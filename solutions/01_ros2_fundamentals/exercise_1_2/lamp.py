@@ -115,6 +115,11 @@ def calls(now: Moment) -> str:
     return RIGHT if was_everywhere else f"{called}, and no answer after that"
 
 
+def delays(random: Random) -> list[float]:
+    """Return after how many seconds the lamp answers each call."""
+    return [random.choice((0.25, 0.3, 0.35)) for _ in levels(NEAR)]
+
+
 LAMP = partial(
     Mission,
     "exercise_1_2.lamp",
@@ -168,9 +173,9 @@ LAMP = partial(
     ],
     within=30.0,
 )
-"""The mission of a lamp that answers at once, for the bug hunts about it."""
+"""The mission of the lamp, for the bug hunts about it: they say when it answers."""
 # A node that remembers the lamp's state only when the answer comes would ask again meanwhile.
-EXERCISE = LAMP(late={"/lamp": lambda random: [random.choice((0.25, 0.3, 0.35)) for _ in range(8)]}).exercise(
+EXERCISE = LAMP(late={"/lamp": delays}).exercise(
     text={
         "Let the lamp be on while the robot is less than 1 meter from the door, at `x = 4`, and off elsewhere.": "lamp",
         "Call the service once for each change, and never more often.": "lamp",
