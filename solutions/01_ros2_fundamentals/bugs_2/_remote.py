@@ -11,6 +11,8 @@ The gaps differ, so that a command that is forgotten at regular times is forgott
 """
 SPEAKS = 0.45
 """The remote control still speaks if no gap is longer, in seconds; on a busy machine, one may be."""
+GUARD = 1.75
+"""A robot stands later only by its own guard, after a second with commands and another one without any, in seconds."""
 
 
 def held(speed: float) -> list[To | float]:
@@ -21,6 +23,12 @@ def held(speed: float) -> list[To | float]:
 def driven(now: Moment) -> float:
     """Return how many meters the robot has driven in this world."""
     return now.pose.x - now.world.start.x
+
+
+def stood_after(now: Moment) -> float:
+    """Return how many seconds after the last command of the remote control the robot stood."""
+    sent = [event.moment for event in now.part.of("sent", "/remote")]
+    return sent[0] + now.time - now.stood - sent[-1]
 
 
 def stutters(now: Moment) -> bool:
@@ -43,7 +51,10 @@ EXERCISE = Mission(
     ],
     reaches=[
         ("Drives while the tablet speaks", lambda now: now.leg == 0 and driven(now) > 0.8),
-        ("Stands while the tablet is silent", lambda now: now.leg == 1 and now.stood > 1.0),
+        (
+            "Stands while the tablet is silent",
+            lambda now: now.leg == 1 and now.stood > 1.0 and stood_after(now) < GUARD,
+        ),
         ("Drives again when the tablet speaks again", lambda now: now.leg == 2 and driven(now) > 0.8),
     ],
     never=[("Never stands between two commands of the tablet", stutters)],
