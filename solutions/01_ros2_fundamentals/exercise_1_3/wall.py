@@ -1,7 +1,10 @@
 """Exercise 1.3, a wall on the way: a client cancels its walk when the laser sees a wall, once."""
 
+from typing import Any
+
 from autograder.kit import Mission, Moment, Pose, Wall, World
 from autograder.kit.mission.mission import ROOM, Walls
+from autograder.robot.sensors import laser_scan, look_around
 
 NEAR, MOST = 1.5, 2
 """Below how many meters a wall is near, and how many near scans may come until the request is there."""
@@ -10,6 +13,17 @@ NEAR, MOST = 1.5, 2
 def blocked(x: float) -> World:
     """Return the two rooms with one wall more, right across the way of the robot."""
     return World(Walls([*ROOM.walls, Wall((x, 0), (x, 4))]), Pose(1.0, 2.0, 0.0))
+
+
+def through_the_wall(now: Moment) -> dict[str, Any] | None:
+    """Return one scan, as soon as the client has asked to cancel, in which the way is free; None for what is there.
+
+    A client that forgets then that it has asked, asks again at the next scan.
+    """
+    asked = now.part.events[len(now.before("cancel").part.events) :] if now.part.of("cancel") else []
+    if not asked or any(event.kind == "sent" for event in asked):
+        return None
+    return laser_scan(look_around(now.pose, ROOM), round(now.time * 1e9))
 
 
 def ahead_until_cancel(now: Moment) -> list[float]:
@@ -37,6 +51,7 @@ EXERCISE = Mission(
     # Where the wall is depends on what the laser sees twice a second, each time a quarter of a meter further on: so a
     # limit of any size is right or wrong in all of these worlds.
     draws=lambda random: [blocked(random.choice((3.5, 3.75, 4.25, 4.5)))],
+    senses={"/scan": through_the_wall},
     # After a request to cancel, the robot brakes for half a meter: it ends 0.75 to 1 m away.
     reaches=[
         ("Stands in front of the wall", lambda now: 0.6 < now.ahead < 1.05 and now.stood > 2.0, "stands", 4)
