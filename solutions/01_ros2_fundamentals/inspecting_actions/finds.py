@@ -29,7 +29,7 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     beside: dict[str, dict[str, Any]] = {
         client: {"subscribes": {asked: another}},
         one: {"publishes": {shorter: random.choice(TYPES)}},
-        other: {"publishes": {longer: random.choice(TYPES)}, "subscribes": action},
+        other: {"publishes": {longer: random.choice(TYPES), f"{other}{asked}": another}, "subscribes": action},
     }
     nodes = drawn_until(lambda: shuffled(random, list(beside.items())), lambda nodes: nodes[2][0] != client)
     if kind == NONE:
@@ -45,9 +45,12 @@ def robots(random: Random) -> dict[str, Robot]:
     """Draw two robots that are there, one that comes late, and a place without one. Their order is drawn, too."""
     names, (walks, counts) = shuffled(random, NAMES), TYPES
     kinds = shuffled(random, ("robot 1", "robot 2", LATE, NONE))
-    # Neither type is that of all robots.
-    found = iter(shuffled(random, (walks, counts, random.choice(TYPES))))
-    return {kind: robot(random, names, kind, walks if kind == NONE else next(found)) for kind in kinds}
+    # Neither type is that of all robots. Only of what comes late is the client's type known for certain when the server
+    # is found. The list of a name's types is sorted: there, a subject that takes the first one is wrong.
+    found = iter(shuffled(random, (counts, random.choice(TYPES))))
+    return {
+        kind: robot(random, names, kind, walks if kind in (LATE, NONE) else next(found)) for kind in kinds
+    }
 
 
 EXERCISE = Quest(robots).exercise(
