@@ -28,6 +28,7 @@ def calls(random: Random) -> list[str]:
         walk(*random.choice(((0, 4), (6, 0), (0.0, 0), (6.0, 4.0)))),
         *(say(random) for _ in range(3)),
         json.dumps({"tool": "lamp", "on": True, "text": random.choice(WORDS), "x": 9}),
+        json.dumps({"tool": "say", "text": random.choice(WORDS), "on": "yes", "y": float("nan")}),
     ]
     wrong = [
         call

@@ -36,9 +36,13 @@ def lamps(random: Random) -> list[Any]:
 
     The first answer comes after the next call, in the middle of its step.
     """
+    works = mixed(random, (True, True, False, False, random.choice((True, False))), bool)
+    # Whatever a success says, it is no error.
+    says = {False: ["no power in"] * 3, True: shuffled(random, ["power in", "", "current flows in"])}
+    texts = [says[success].pop() for success in works]
     first, *others = [
-        {"success": success, "message": "" if success else f"no power in line {random.randrange(100, 1000)}"}
-        for success in mixed(random, (True, True, False, False, random.choice((True, False))), bool)
+        {"success": success, "message": text and f"{text} line {random.randrange(100, 1000)}"}
+        for success, text in zip(works, texts, strict=True)
     ]
     return [Work(takes=1.5 * PAUSE, result=first), *others]
 
