@@ -29,6 +29,8 @@ WALKS = {
     "quiet": Work("succeeded", 6.5),
     # Farther than any walk before it: a node that remembers the distance of another walk cancels it.
     "far": Work("succeeded", 1.5, [{"distance": distance} for distance in (5.0, 4.5, 4.0)]),
+    # Nearer than any other walk, and each time by a centimeter or two.
+    "slow": Work("succeeded", 1.5, [{"distance": distance} for distance in (0.75, 0.74, 0.72)]),
 }
 """What comes of a walk. The last digit of its place says which: of ``x``, in centimeters."""
 ANSWERS = {

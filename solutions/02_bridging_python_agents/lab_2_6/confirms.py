@@ -25,7 +25,8 @@ def steps(random: Random) -> list[Text | float]:
         [order(random, "perhaps", "done"), PAUSE],
         [order(random, "shouts", "done"), PAUSE],
         [order(random, never, random.choice(("lamp", "walk")), "done"), 1.75, PAUSE],
-        [order(random, late, "done"), 1.75, PAUSE],
+        # A question that is open for two seconds and a half is given up in the next step only.
+        [order(random, late, "done"), 1.15, 1.4, PAUSE],
         # The budget ends with a door that nobody has confirmed, and then the person says yes.
         [order(random, "lamp", "lamp", "lamp", late), 1.75, PAUSE],
         # A newer order, and then the person says yes to the older one, or never answers it.

@@ -18,7 +18,7 @@ def steps(random: Random) -> list[Text]:
         [order(random, "lamp", "done")],
         [order(random, "walk", "lamp", "far", "done")],
         [order(random, random.choice(("blocked", "refused")), "walk", "done")],
-        [order(random, random.choice(("nan", "fly")), "walk", "done")],
+        [order(random, random.choice(("nan", "fly")), "slow", "done")],
         [order(random, "stuck", "walk", "done")],
         [order(random, "walk", "away", "done")],
         used_up := [order(random, *shuffled(random, ("walk", "blocked", "lamp", "fly")), "lamp", "done")],
