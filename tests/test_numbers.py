@@ -64,14 +64,16 @@ def blind() -> str:
         r"of which (\w+) are rejected",
         ACCURACY,
     )
-    usual = found(r"Then came (\d+) with usual mistakes.*? and (\d+) wrong ones: .*? Of these, (\w+) are", ACCURACY)
+    usual = found(
+        r"Then came (\d+) with usual mistakes.*? and (\d+) wrong ones: .*? Of these, (\w+) are", ACCURACY
+    )
     written, lost, mistaken = map(number, right.groups())
     return (
         f"Of {written - mistaken} right ones {IN_WORDS[lost - mistaken]} lost points; "
         f"of {wrong[1]} wrong ones none passed. On {later[1]}, {later[3]} of {later[2]} more wrong ones "
         f"passed: {later[4]} do what their tasks ask or leave open, {later[6]} others are rejected since. "
-        f"On {rare[1]}, {rare[3]} of {rare[2]} with mistakes in rare cases and {usual[2]} of {usual[1]} with usual ones "
-        f"passed; {number(rare[4]) + number(usual[3])} are rejected since."
+        f"On {rare[1]}, {rare[3]} of {rare[2]} with mistakes in rare cases and {usual[2]} of {usual[1]} with usual "
+        f"ones passed; {number(rare[4]) + number(usual[3])} are rejected since."
     )
 
 

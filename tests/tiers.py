@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.turns import LIVE, SHORT, Draw
+from tests.turns import GRAPH, LIVE, SHORT, Draw
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -137,7 +137,7 @@ DRAWS = (
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_works_in_its_constructor", 1),
     Draw("tests/notebook/checking/test_working_constructors.py::test_what_is_wrong_there_is_told", 1),
     Draw("tests/browser/test_restart.py::", 1),
-    Draw("tests/environment/ros2_command/test_graph.py::", 4),
+    Draw(GRAPH, 4),
     Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),
     Draw("tests/grading/test_fail_closed.py::test_a_disk_that_is_full_at_any_moment[", 4),
     Draw(

@@ -31,6 +31,11 @@ class Draw:
         return test.startswith(self.beginnings)
 
 
+GRAPH = tuple(
+    f"tests/environment/ros2_command/test_graph.py::test_{name}"
+    for name in ("what", "ctrl_c_ends", "hz", "bw", "delay", "pub", "call", "parameters", "doctor", "other")
+)
+"""Verbs of the ros2 command with real nodes: all of them but Ctrl-C, which has to cancel a goal."""
 LIVE = "tests/judge/test_bank.py::test_answer_is_judged_right"
 SHORT = (
     # Each of the two thousand answers is judged in this tier from what was seen of it, and if its scenario has changed
@@ -58,7 +63,7 @@ SHORT = (
     # Whole ways with programs of their own, in turn. Below each is said what of it the short tier always tests.
     Draw(
         (
-            # The book. Links between its pages: test_docs.py; the notebooks that it shows: tests/masters.
+            # The book. Links between its pages: test_docs.py; what is written of each notebook: test_site_sources.py.
             "tests/authoring/test_site.py::",
             # All but the notebooks of what is handed out: another test of the file.
             "tests/test_handed_out_answers.py::test_no_class_of_a_notebook_answers_an_exercise",
@@ -82,7 +87,6 @@ SHORT = (
             "tests/workspaces/builds/test_plain_packages.py::test_beside_another_package",
             "tests/workspaces/builds/test_students_builds.py::test_the_sources_are_built",
             "tests/workspaces/builds/test_students_builds.py::test_a_change_since_then",
-            "tests/workspaces/builds/test_students_builds.py::test_links_show",
             "tests/environment/ros2_command/test_pkg_create.py::test_colcon_builds_what_was_created",
             "tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks",
         ),
@@ -105,13 +109,7 @@ SHORT = (
         whole=True,
     ),
     # Pictures that nodes move in a kernel of its own: what is drawn is tested in tests/robot and tests/notebook.
-    Draw(
-        tuple(
-            f"tests/notebook/{name}.py::"
-            for name in ("test_live_robot", "observing/test_live_graph", "test_robot_scenes")
-        ),
-        3,
-    ),
+    Draw(("tests/notebook/test_live_robot.py::", "tests/notebook/observing/test_live_graph.py::"), 2),
     Draw("tests/notebook/nodes/test_ros_session.py::test_what_a_program_that_starts_ros_prints[", 3),
     Draw("tests/notebook/nodes/test_kernel_exit.py::test_a_process_ends_cleanly[", 4),
     Draw("tests/authoring/test_executing.py::", 3),
@@ -157,7 +155,7 @@ SHORT = (
     Draw("tests/environment/ros2_command/test_launch_processes.py::test_what_a_launch_says[", 7),
     Draw("tests/authoring/mutants/test_engine.py::test_an_operator_makes_its_mistake[", 10),
     Draw("tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[", 5),
-    Draw("tests/environment/ros2_command/test_graph.py::", 2),
+    Draw(GRAPH, 2),
     Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 1),
     Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 2),
 )
