@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests import tiers
+from tests.turns import SHORT, Draw
 
 if TYPE_CHECKING:
     import pytest
@@ -35,7 +36,7 @@ def test_no_draw_is_spent_on_what_is_left_to_all(monkeypatch: pytest.MonkeyPatch
 def test_the_short_tier_runs_fewer_of_what_is_drawn_and_all_that_is_due(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(tiers, "SHORT", (tiers.Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1),))
+    monkeypatch.setattr(tiers, "SHORT", (Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1),))
     assert len(set(IDS) - tiers.never_drawn(IDS)) == 2
     assert len(set(IDS) - tiers.left_to_all(IDS, [])) == 1
     assert not tiers.left_to_all(IDS, IDS)
@@ -43,7 +44,7 @@ def test_the_short_tier_runs_fewer_of_what_is_drawn_and_all_that_is_due(
 
 def test_tests_that_share_what_is_made_are_drawn_together(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tiers, "SHORT", ())
-    monkeypatch.setattr(tiers, "DRAWS", (tiers.Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1, whole=True),))
+    monkeypatch.setattr(tiers, "DRAWS", (Draw((f"{BANK}lab.a", f"{BANK}lab.b"), 1, whole=True),))
     kept = set(IDS) - tiers.left_to_all(IDS, [])
     assert len(kept) == 9
     assert len({one.partition("/right")[0] for one in kept}) == 1
@@ -55,7 +56,7 @@ def test_what_is_due_runs_whatever_is_drawn() -> None:
 
 
 def test_every_name_in_the_lists_is_a_tests(request: pytest.FixtureRequest) -> None:
-    draws = (*tiers.DRAWS, *tiers.SHORT, *tiers.SMOKE, *tiers.LONG)
+    draws = (*tiers.DRAWS, *SHORT, *tiers.SMOKE, *tiers.LONG)
     names = [*tiers.NIGHTLY, *(one for draw in draws for one in draw.beginnings)]
     root = Path(__file__).parents[1]
     missing = [name for name in names if not (root / name.partition("::")[0]).exists()]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.action.client import ActionClient
 from rclpy.action.server import ActionServer
 from rclpy.client import Client
+from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.subscription import Subscription
@@ -252,6 +253,13 @@ def _likely_callback(node: Node | None) -> str:
 
 def _callback_owner(entity: Any) -> str:
     """Return the owner of a callback in words, such as ``its service /reset``."""
+    try:
+        return _owner_in_words(entity)
+    except InvalidHandle:  # its node was destroyed meanwhile
+        return f"its {type(entity).__name__.lower()}"
+
+
+def _owner_in_words(entity: Any) -> str:
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
     if isinstance(entity, Subscription):

@@ -302,6 +302,11 @@ def is_destroyed(node: Node) -> bool:
         return True
 
 
+def is_being_destroyed(node: Node) -> bool:
+    """Return True as soon as ``destroy_node`` was called, which drops this publisher first (rclpy, ``node.py``)."""
+    return getattr(node, "_parameter_event_publisher", None) is None
+
+
 _STOPPED = "was stopped while this call was waiting for its answer"
 
 

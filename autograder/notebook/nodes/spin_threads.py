@@ -27,7 +27,12 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ConditionReachedException, ExternalShutdownException, ShutdownException
 
 from autograder.notebook.nodes.lending_executors import make_executor, wake_global_executor
-from autograder.notebook.nodes.ros_session import NodeEndedError, destroy_node, release_waiting_calls
+from autograder.notebook.nodes.ros_session import (
+    NodeEndedError,
+    destroy_node,
+    is_being_destroyed,
+    release_waiting_calls,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -335,6 +340,8 @@ class SpinThreads:
             self._report(error, work.entity, work.node)
 
     def _report(self, error: BaseException, entity: Any, node: Node | None) -> None:
+        if node is not None and isinstance(error, InvalidHandle) and is_being_destroyed(node):
+            return  # a cell destroys the node while one of its callbacks still uses it
         self._on_failure(SpinFailure(error, entity, node, goes_on=not self._stop.is_set()))
 
     def _is_of_the_end(self, error: BaseException, running: _BusyThread) -> bool:

@@ -29,7 +29,10 @@ def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
     beside: dict[str, dict[str, Any]] = {
         client: {"subscribes": {asked: another}},
         one: {"publishes": {shorter: random.choice(TYPES)}},
-        other: {"publishes": {longer: random.choice(TYPES), f"{other}{asked}": another}, "subscribes": action},
+        other: {
+            "publishes": {longer: random.choice(TYPES), f"{other}{asked}": another},
+            "subscribes": action,
+        },
     }
     nodes = drawn_until(lambda: shuffled(random, list(beside.items())), lambda nodes: nodes[2][0] != client)
     if kind == NONE:

@@ -12,6 +12,7 @@ import rclpy
 from my_robot_interfaces.srv import AddTwoInts
 from rclpy.executors import Executor, MultiThreadedExecutor
 from rclpy.node import Node
+from std_msgs.msg import String
 
 from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.background_nodes import spin_in_background, stop_all
@@ -23,6 +24,7 @@ from autograder.notebook.nodes.ros_session import (
     start_ros,
 )
 from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
+from tests.notebook.conftest import LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -147,6 +149,31 @@ def test_trouble_of_the_executor_is_survived_or_told(
     printed = capfd.readouterr().out
     assert "RuntimeError: wait set is broken" in printed
     assert "The executor failed, so ticker spins no longer." in printed
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize(("own", "seen"), [(None, []), (ValueError("no such robot"), ["its timer"])])
+def test_a_node_may_be_destroyed_while_its_callback_runs(
+    nodes: Any, own: Exception | None, seen: list[str], threads: int
+) -> None:
+    begun, destroyed = threading.Event(), threading.Event()
+
+    def tick() -> None:
+        begun.set()
+        destroyed.wait(LIMIT)
+        if own:
+            raise own
+        doomed.publisher.publish(String())
+
+    doomed, other = nodes.Ticker("doomed"), nodes.Ticker("other")
+    doomed.create_timer(0.01, tick)
+    background = spin_in_background(doomed, other, threads=threads)
+    assert begun.wait(LIMIT)
+    doomed.destroy_node()
+    destroyed.set()
+    other.wait_for_ticks(20)
+    assert background.running
+    assert [error.where for error in background.errors] == seen
 
 
 @pytest.mark.parametrize("threads", [1, 3])
