@@ -25,17 +25,20 @@ def driven(now: Moment) -> float:
     return now.pose.x - now.world.start.x
 
 
+def spoke(now: Moment) -> list[float]:
+    """Return when the remote control sent its commands, in seconds since the first one, with which a mission begins."""
+    sent = [event.moment for event in now.part.of("sent", "/remote")]
+    return [moment - sent[0] for moment in sent]
+
+
 def stood_after(now: Moment) -> float:
     """Return how many seconds after the last command of the remote control the robot stood."""
-    sent = [event.moment for event in now.part.of("sent", "/remote")]
-    return sent[0] + now.time - now.stood - sent[-1]
+    return now.time - now.stood - spoke(now)[-1]
 
 
 def stutters(now: Moment) -> bool:
     """Return True if the robot has driven in this world and stands, although the remote control speaks."""
-    sent = [event.moment for event in now.part.of("sent", "/remote")]
-    # The first command is sent when the mission begins.
-    gaps = [late - early for early, late in pairwise([*sent[-2:], sent[0] + now.time])] if sent else []
+    gaps = [late - early for early, late in pairwise([*spoke(now)[-2:], now.time])]
     return bool(gaps) and max(gaps) < SPEAKS and driven(now) > 0 and now.stood > 0.0
 
 
