@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import threading
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -219,7 +220,9 @@ class CallbackErrors:
 def _report(seen: CallbackError, failure: SpinFailure) -> str:
     lines = [f"Error in {seen.node}, in the callback of {seen.where}:"]
     if last_student_line(seen.error) is None:
-        lines += [_last_line(seen.error), *_hints(failure)]
+        lines.append(_last_line(seen.error))
+        with suppress(InvalidHandle):  # its node was destroyed meanwhile
+            lines += _hints(failure)
     else:
         lines += render(seen.error)
     if isinstance(seen.error, NodeEndedError):

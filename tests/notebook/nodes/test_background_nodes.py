@@ -16,6 +16,7 @@ from std_msgs.msg import String
 
 from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.background_nodes import spin_in_background, stop_all
+from autograder.notebook.nodes.node_errors import CallbackErrors
 from autograder.notebook.nodes.ros_session import (
     NodeEndedError,
     destroy_node,
@@ -23,7 +24,7 @@ from autograder.notebook.nodes.ros_session import (
     release_waiting_calls,
     start_ros,
 )
-from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
+from autograder.notebook.nodes.spin_threads import CallbackBrokenOff, SpinFailure
 from tests.notebook.conftest import LIMIT
 
 if TYPE_CHECKING:
@@ -174,6 +175,18 @@ def test_a_node_may_be_destroyed_while_its_callback_runs(
     other.wait_for_ticks(20)
     assert background.running
     assert [error.where for error in background.errors] == seen
+
+
+def test_an_error_of_a_timer_that_is_destroyed_is_told(
+    nodes: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ticker = nodes.Ticker()
+    timer = ticker.create_timer(60.0, None)
+    ticker.destroy_node()
+    errors = CallbackErrors()
+    errors.record(SpinFailure(TypeError("not callable"), timer, ticker))
+    assert [error.where for error in errors.all] == ["its timer"]
+    assert "TypeError: not callable" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("threads", [1, 3])
