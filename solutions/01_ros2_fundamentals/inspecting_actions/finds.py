@@ -48,8 +48,8 @@ def robots(random: Random) -> dict[str, Robot]:
     """Draw two robots that are there, one that comes late, and a place without one. Their order is drawn, too."""
     names, (walks, counts) = shuffled(random, NAMES), TYPES
     kinds = shuffled(random, ("robot 1", "robot 2", LATE, NONE))
-    # Neither type is that of all robots. Only of what comes late is the client's type known for certain when the server
-    # is found. The list of a name's types is sorted: there, a subject that takes the first one is wrong.
+    # No type is right for all robots. A late server is the only one whose client is certainly known when it is found.
+    # The list of a name's types is sorted, the client's type first: a subject that takes the first type is wrong.
     found = iter(shuffled(random, (counts, random.choice(TYPES))))
     return {
         kind: robot(random, names, kind, walks if kind in (LATE, NONE) else next(found)) for kind in kinds

@@ -37,7 +37,7 @@ def lamps(random: Random) -> list[Any]:
     The first answer comes after the next call, in the middle of its step.
     """
     works = mixed(random, (True, True, False, False, random.choice((True, False))), bool)
-    # Whatever a success says, it is no error.
+    # A success may have a message, too.
     says = {False: ["no power in"] * 3, True: shuffled(random, ["power in", "", "current flows in"])}
     texts = [says[success].pop() for success in works]
     first, *others = [
