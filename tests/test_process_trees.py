@@ -70,7 +70,7 @@ def test_processes_that_are_ended_one_by_one_do_not_end_at_once() -> None:
     last_words = (
         "import os, signal, sys, time\n"
         "def leave(*_):\n    os.write(1, b'from ')\n    time.sleep(0.2)\n    os.write(1, b'one\\n')\n    os._exit(0)\n"
-        "signal.signal(signal.SIGTERM, leave)\nos.write(2, b'.')\nwhile True:\n    signal.pause()"
+        "signal.signal(signal.SIGTERM, leave)\nos.write(2, b'.')\nwhile True:\n    time.sleep(0.01)"
     )
     reading, writing = os.pipe()
     begun, beginning = os.pipe()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -107,7 +108,7 @@ def end_of(running: Running | WarmCommand) -> Run:
     deadline = time.monotonic() + 60.0
     while (data := running.read(30.0)) != b"":
         assert time.monotonic() < deadline, "it says more and more, and does not end"
-        assert data is not None, f"it says no more than {output!r} and does not end"
+        assert data is not None, f"it says no more than {output!r} and does not end: {_states(running.pid)}"
         output += data
         if f"{READY}\n".encode() in output and not asked:
             running.interrupt()
@@ -234,3 +235,19 @@ def _members(first: int) -> Iterator[int]:
         yield from (int(p.name) for p in Path(f"/proc/{first}/root/proc").iterdir() if p.name.isdecimal())
     except OSError:
         return
+
+
+def _states(first: int) -> dict[str, str]:
+    """What the living processes of the box do, and which signals wait for them or have a handler, by command line."""
+    from pathlib import Path
+
+    place, states = Path(f"/proc/{first}/root/proc"), {}
+    for process in _members(first):
+        with contextlib.suppress(OSError):
+            words = (place / f"{process}/cmdline").read_bytes().replace(b"\0", b" ").decode()
+            lines = (place / f"{process}/status").read_text().splitlines()
+            shown = [
+                line for line in lines if line.startswith(("State", "SigPnd", "ShdPnd", "SigIgn", "SigCgt"))
+            ]
+            states[f"{process}: {words}"] = ", ".join(shown)
+    return states
