@@ -222,6 +222,12 @@ def test_a_client_that_never_asked_for_its_result_is_not_waited_for_in_the_later
     assert (waited == usual) if asks else (waited < usual)
 
 
+@pytest.mark.parametrize("asks", [True, False])
+def test_a_cancel_is_refused_only_if_the_client_asks_how_its_goal_ended(asks: bool) -> None:
+    bench = _served(run(HONORED) if asks else _never_asks(), name=CANCEL_REFUSED)
+    assert bench.serve_action.call_args.kwargs["accept_cancel"] is not asks
+
+
 @pytest.mark.parametrize("says", ["canceled", "it is over"])
 def test_a_client_that_did_not_say_how_its_first_goal_ended_need_not_say_so_again(says: str) -> None:
     bench = _served(run(HONORED, says=says))
@@ -234,11 +240,11 @@ def _never_asks() -> Part:
     return Part(HONORED, {}, [event for event in usual.events if event.kind != "result_request"])
 
 
-def _served(first: Part, in_a_cell: bool = False) -> MagicMock:
+def _served(first: Part, in_a_cell: bool = False, name: str = AGREED) -> MagicMock:
     """A bench on which a later run was served to a client that asks to cancel at once."""
     bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE)
-    bench.seen = lambda: Part(AGREED, {"gap": cancel.QUICK[0]}, run(AGREED).events)
-    RECIPE._serve(bench, AGREED, first, late=0.0, held=0.0)
+    bench.seen = lambda: Part(name, {"gap": cancel.QUICK[0]}, run(name).events)
+    RECIPE._serve(bench, name, first, late=0.0, held=0.0)
     return bench
 
 

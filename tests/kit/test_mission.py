@@ -236,15 +236,15 @@ def test_the_same_commands_lead_to_the_same_places_with_the_same_seed() -> None:
 
 
 def test_a_second_world_puts_the_robot_at_its_start_and_a_step_gives_an_input() -> None:
-    legs: dict[int, float] = {}
+    legs: dict[int, tuple[float, bool]] = {}
 
     def far(now: Moment) -> bool:
-        legs[now.leg] = now.pose.y
+        legs[now.leg] = now.pose.y, now.stood > 0.4
         return now.leg == 1
 
     steps = [IN_THE_WAY, 0.5, replace(IN_THE_WAY, start=Pose(1.0, 0.5, 0.0)), To("/odom", {}), 0.3]
     driven(mission(draws=lambda _: steps, reaches=[("Far", far)]), lambda ros: None)
-    assert legs == {0: 0.0, 1: 0.5}
+    assert legs == {0: (0.0, True), 1: (0.5, False)}, "there it has stood since it came"
 
 
 def test_a_step_that_the_solution_does_not_take_is_named() -> None:

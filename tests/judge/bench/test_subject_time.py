@@ -7,7 +7,9 @@ import threading
 import time
 from contextlib import ExitStack, closing
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
+from unittest.mock import MagicMock
 
 import pytest
 from rcl_interfaces.msg import SetParametersResult
@@ -19,9 +21,9 @@ from autograder.judge.bench import subject_time
 from autograder.judge.bench.discovery import NodeName
 from autograder.judge.bench.judge_nodes import Wire
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.subject_time import FIRST, NodeClock, SimulatedClock
+from autograder.judge.bench.subject_time import FIRST, NodeClock, SimulatedClock, SubjectTime
 from autograder.kit.bench import Pace
-from autograder.kit.evidence import Reference
+from autograder.kit.evidence import Event, Part, Reference
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -174,6 +176,18 @@ def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode,
         assert clock.run(1.0, lambda: False, step=0.25)
         assert clock.run(0.3, lambda: False, step=0.25)
     assert [round(now - FIRST, 3) for now in fired] == [0.25, 0.5, 0.75, 1.0, 1.25, 1.3]
+
+
+def test_a_message_of_each_node_may_have_been_on_its_way_when_the_clock_stopped() -> None:
+    events = [Event(0.1, "message", "/chatter"), Event(0.1, "message", "/beside")]
+    recorder = SimpleNamespace(part=lambda: Part("talking", {}, list(events)))
+    presence = MagicMock(recorder=recorder, subscriptions={"/chatter": None})
+    is_silent = SubjectTime(MagicMock(), presence, MagicMock(), MagicMock())._silence(2)
+    silent = []
+    for topic in ("/beside", "/chatter", "/chatter", "/chatter"):
+        events.append(Event(0.2, "message", topic))
+        silent.append(is_silent())
+    assert silent == [True, True, True, False]
 
 
 def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
