@@ -71,10 +71,18 @@ def goal(evidence: Evidence) -> str:
 
 
 def moment(evidence: Evidence) -> int | None:
-    """Return the number of messages before the request, in the run in which it is most wrong; None without one."""
+    """Return the number of messages before the request; None if a run has no request.
+
+    Of wrong numbers, it is the smallest: a client that goes by a clock is too early where the server is slow, and how
+    late it is where the server is quick is up to the machine.
+    """
     runs = [part for name in (HONORED, CANCEL_REFUSED) if (part := evidence.part(name)).of("goal")]
-    counts = [request.count if request else None for request in map(cancel_request, runs)] or [None]
-    return next((count for count in counts if count is None or not FIRST <= count <= LAST), counts[0])
+    requests = [cancel_request(part) for part in runs]
+    counts = [request.count for request in requests if request]
+    wrong = [count for count in counts if not FIRST <= count <= LAST]
+    if wrong:
+        return min(wrong)
+    return counts[0] if requests and len(counts) == len(requests) else None
 
 
 def every_goal(evidence: Evidence) -> str:
