@@ -1,6 +1,7 @@
 """Lab 1.2, a robot that says in which room it is, once for each visit."""
 
 from functools import partial
+from itertools import pairwise
 from random import Random
 
 from autograder.kit import SameAsSolution, To, drawn_until, levels, mixed
@@ -10,13 +11,25 @@ DOOR, END = 4.0, 6.0
 
 
 def steps(random: Random) -> list[To]:
-    """Return messages of the robot's odometry. The first comes from the left room, where the robot starts."""
+    """Return messages of the robot's odometry. The first comes from the left room, where the robot starts.
+
+    The robot comes into each room once by its place nearest to the door: there, a node must not wait for the next one.
+    """
     places = levels(DOOR, below=END)
+    doorsteps = {
+        max(place for place in places if place < DOOR),
+        min(place for place in places if place > DOOR),
+    }
     places += random.sample(places, 4)
     ways = partial(mixed, random, places, lambda place: place < DOOR)
-    way = drawn_until(ways, lambda way: way[0] < DOOR)
+
+    def tells(way: list[float]) -> bool:
+        entered = {after for before, after in pairwise(way) if (before < DOOR) is not (after < DOOR)}
+        return way[0] < DOOR and doorsteps <= entered
+
     return [
-        To("/odom", {"pose": {"pose": {"position": {"x": x, "y": random.uniform(0.5, 3.5)}}}}) for x in way
+        To("/odom", {"pose": {"pose": {"position": {"x": x, "y": random.uniform(0.5, 3.5)}}}})
+        for x in drawn_until(ways, tells)
     ]
 
 
