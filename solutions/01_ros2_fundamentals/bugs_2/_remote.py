@@ -9,15 +9,21 @@ GAPS, SILENCE = (0.4, 0.3, 0.4, 0.4, 0.2) * 2, 3.5
 
 The gaps differ, so that a command that is forgotten at regular times is forgotten in the middle of one of them.
 """
+TURNS = (-0.2, 0.2)
+"""Radians per second that a command turns the robot while it drives."""
 SPEAKS = 0.45
 """The remote control still speaks if no gap is longer, in seconds; on a busy machine, one may be."""
 GUARD = 1.75
 """A robot stands later only by its own guard, after a second with commands and another one without any, in seconds."""
 
 
-def held(speed: float) -> list[To | float]:
-    """Return the steps of a remote control that speaks at least twice a second, but not evenly."""
-    return [step for gap in GAPS for step in (To("/remote", {"linear": {"x": speed}}), gap)]
+def held(speed: float, turn: float) -> list[To | float]:
+    """Return the steps of a remote control that speaks at least twice a second, but not evenly.
+
+    Each command turns the robot a little, too, so that a robot that goes on turning does not stand.
+    """
+    command = {"linear": {"x": speed}, "angular": {"z": turn}}
+    return [step for gap in GAPS for step in (To("/remote", command), gap)]
 
 
 def driven(now: Moment) -> float:
@@ -49,7 +55,7 @@ EXERCISE = Mission(
     roles=("publisher", "subscription"),
     draws=lambda random: [
         step
-        for steps in (held(0.5), [SILENCE], held(0.4), [])
+        for steps in (held(0.5, random.choice(TURNS)), [SILENCE], held(0.4, random.choice(TURNS)), [])
         for step in (World(start=Pose(random.uniform(0.8, 1.0), 2.0, 0.0)), *steps)
     ],
     reaches=[
