@@ -56,8 +56,10 @@ def robots(random: Random) -> dict[str, Robot]:
         names = (topic, topic) if case == CASES[1] else random.sample((topic, wrong), 2)
         kind = types[0], types[case != CASES[0]]
         talks, hears = ({name: one} for name, one in zip(names, kind, strict=True))
+        # Where both sides have one type, these have the other, so that no type of theirs is right in each run.
+        their_types = types[1:] if case == CASES[0] else types
         beside = {
-            f"/{word}/{random.choice(QUALITIES)}": random.choice(types)
+            f"/{word}/{random.choice(QUALITIES)}": random.choice(their_types)
             for word in (third, its_own, random.choice(OTHERS))
         }
         # In one participant a topic has one type, so if the two sides share the name, the third node only listens.
