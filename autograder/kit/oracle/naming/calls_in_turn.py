@@ -14,8 +14,8 @@ OFTEN = 2
 IN_TURN = (
     "While a call of {} is open, your node makes no other one: what comes meanwhile waits until the call before is "
     "answered.",
-    "Make each call as soon as its input comes. A lock, a queue, or one thread for all work makes one call wait for "
-    "the other: leave it out, and keep what belongs to one call in variables of its own.",
+    "Make each call as soon as its input comes. A lock, a queue, one thread for all work, or `call` in a loop makes "
+    "one call wait for the other: leave it out, and keep what belongs to one call in variables of its own.",
 )
 """The words for such a node, and the next step."""
 
