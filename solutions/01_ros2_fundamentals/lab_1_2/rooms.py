@@ -13,13 +13,11 @@ DOOR, END = 4.0, 6.0
 def steps(random: Random) -> list[To]:
     """Return messages of the robot's odometry. The first comes from the left room, where the robot starts.
 
-    The robot comes into each room once by its place nearest to the door: there, a node must not wait for the next one.
+    The robot comes into each room once a centimeter behind the door: there, a node must not wait for the
+    next place, and no other number that students write is the door's.
     """
-    places = levels(DOOR, below=END)
-    doorsteps = {
-        max(place for place in places if place < DOOR),
-        min(place for place in places if place > DOOR),
-    }
+    doorsteps = {DOOR - 0.01, DOOR + 0.01}
+    places = [*levels(DOOR, below=END), *sorted(doorsteps)]
     places += random.sample(places, 4)
     ways = partial(mixed, random, places, lambda place: place < DOOR)
 
