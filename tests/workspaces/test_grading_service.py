@@ -68,8 +68,9 @@ class FakeJobs:
 
 
 def _packed(*names: str) -> bytes:
-    """A packed install folder with empty files."""
-    return msgspec.msgpack.encode([PackedEntry(name.encode(), Kind.FILE) for name in names])
+    """A packed install folder whose files contain its path in the box, as colcon's scripts do."""
+    place = b"/home/student/ros2_ws/install"
+    return msgspec.msgpack.encode([PackedEntry(name.encode(), Kind.FILE, place) for name in names])
 
 
 class FakeJudge:
@@ -371,6 +372,8 @@ def test_a_notebook_s_build_comes_from_the_grader(
     code, said = colcon("--packages-select", "my_robot_pkg")
     assert (code, "Finished <<< my_robot_pkg" in said) == (0, True)
     assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
+    script = lab / "install" / "my_robot_pkg" / "share" / "x"
+    assert script.read_text() == str(lab / "install"), "the path in the box leads nowhere"
     judge = FakeJudge(sockets)
     judge.check(lab)
     assert reports(judge.run())[-1]["built"]
