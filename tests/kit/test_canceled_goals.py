@@ -214,12 +214,19 @@ def test_the_server_is_there_before_a_function_that_is_known_to_ask_for_its_resu
     assert (calls.index("serve_action") < calls.index("start")) == prepared
 
 
-@pytest.mark.parametrize("asks", [True, False])
-def test_a_client_that_never_asked_for_its_result_is_not_waited_for_in_the_later_runs(asks: bool) -> None:
-    bench = _served(run(HONORED) if asks else _never_asks())
+@pytest.mark.parametrize(
+    ("asked", "cancels", "waits"),
+    [(None, True, True), (True, True, True), (False, True, False), (True, False, False)],
+)
+def test_only_who_cancels_and_is_not_known_to_leave_its_result_is_waited_for(
+    asked: bool | None, cancels: bool, waits: bool
+) -> None:
+    """What a client asked in the first run is not known yet in that run."""
+    first = None if asked is None else run(HONORED) if asked else _never_asks()
+    bench = _served(first, cancels=cancels)
     usual = END_LIMIT[Pace.FAST]
     (waited,) = bench.serve_action.return_value.await_result_request.call_args.args
-    assert (waited == usual) if asks else (waited < usual)
+    assert (waited == usual) if waits else (waited < usual)
 
 
 @pytest.mark.parametrize("asks", [True, False])
@@ -240,9 +247,12 @@ def _never_asks() -> Part:
     return Part(HONORED, {}, [event for event in usual.events if event.kind != "result_request"])
 
 
-def _served(first: Part, in_a_cell: bool = False, name: str = AGREED) -> MagicMock:
-    """A bench on which a later run was served to a client that asks to cancel at once."""
+def _served(
+    first: Part | None, in_a_cell: bool = False, name: str = AGREED, cancels: bool = True
+) -> MagicMock:
+    """A bench on which a run was served to a client that asks to cancel at once, or never."""
     bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE)
+    bench.serve_action.return_value.await_cancel.return_value = cancels
     bench.seen = lambda: Part(name, {"gap": cancel.QUICK[0]}, run(name).events)
     RECIPE._serve(bench, name, first, late=0.0, held=0.0)
     return bench
