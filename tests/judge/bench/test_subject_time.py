@@ -178,13 +178,20 @@ def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode,
     assert [round(now - FIRST, 3) for now in fired] == [0.25, 0.5, 0.75, 1.0, 1.25, 1.3]
 
 
-def test_a_message_of_each_node_may_have_been_on_its_way_when_the_clock_stopped() -> None:
+def test_a_message_of_each_node_may_have_been_on_its_way_when_the_clock_stopped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     events = [Event(0.1, "message", "/chatter"), Event(0.1, "message", "/beside")]
     recorder = SimpleNamespace(part=lambda: Part("talking", {}, list(events)))
-    presence = MagicMock(recorder=recorder, subscriptions={"/chatter": None})
-    is_silent = SubjectTime(MagicMock(), presence, MagicMock(), MagicMock())._silence(2)
+    presence = MagicMock(recorder=recorder, subscriptions={"/chatter": None, "/news": None})
+    presence.counterparts.return_value = [NodeName("one", "/"), NodeName("other", "/")]
+    wire, clock = MagicMock(), MagicMock()
+    wire.node.count_publishers.return_value = 1
+    monkeypatch.setattr(subject_time, "SimulatedClock", clock)
+    SubjectTime(wire, presence, MagicMock(), MagicMock())._clock_taken_over()
+    (is_silent,) = clock.return_value.stands_still.call_args.args
     silent = []
-    for topic in ("/beside", "/chatter", "/chatter", "/chatter"):
+    for topic in ("/beside", "/chatter", "/news", "/chatter"):
         events.append(Event(0.2, "message", topic))
         silent.append(is_silent())
     assert silent == [True, True, True, False]
