@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from course_runtime.ros2_command.pkg_create import _write_cmake
+from course_runtime.ros2_command.pkg_templates import Package
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -116,6 +118,17 @@ def test_a_cmake_package_is_the_default(ros2: Ros2, tmp_path: Path) -> None:
     lists = (tmp_path / "my_interfaces/CMakeLists.txt").read_text()
     assert "find_package(ament_cmake REQUIRED)\nfind_package(std_msgs REQUIRED)\n" in lists
     assert lists.endswith("\nament_package()\n")
+
+
+def test_a_program_in_cpp_is_installed_where_ros2_run_finds_it(tmp_path: Path) -> None:
+    package = Package("my_pkg", "ament_cmake", 3, "", "", "Ada", "ada@example.org", ("rclcpp",), "talker")
+    _write_cmake(package, str(tmp_path))
+    lists = (tmp_path / "CMakeLists.txt").read_text()
+    assert "add_executable(talker src/talker.cpp)\n" in lists
+    assert 'ament_target_dependencies(\n  talker\n  "rclcpp"\n)\n' in lists
+    assert "install(TARGETS talker\n  DESTINATION lib/${PROJECT_NAME})\n" in lists
+    assert "int main(" in (tmp_path / "src" / "talker.cpp").read_text()
+    assert (tmp_path / "include" / "my_pkg").is_dir()
 
 
 def test_an_unknown_license_is_a_warning(ros2: Ros2) -> None:
