@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from typing import Any
 
 import pytest
 
@@ -31,6 +32,23 @@ def lines(operator: str, kind: str = "") -> list[str]:
 @pytest.mark.parametrize(("operator", "kind", "line"), cases(__file__, "an_operator_makes_its_mistake"))
 def test_an_operator_makes_its_mistake(operator: str, kind: str, line: str) -> None:
     assert line in lines(operator, kind)
+
+
+@pytest.mark.parametrize(
+    ("kind", "holds"),
+    [
+        ("once true", [False, True, True, True]),
+        ("once false", [False, False, False, False]),
+        ("one call late", [False, False, True, False]),
+    ],
+)
+def test_a_condition_may_go_by_earlier_calls(kind: str, holds: list[bool]) -> None:
+    text = "class Door:\n    def opens(self, near):\n        return True if near else False\n"
+    (changed,) = [one.text for one in made(text) if (one.operator, one.kind) == ("remembered", kind)]
+    names: dict[str, Any] = {}
+    exec(changed, names)
+    door = names["Door"]()
+    assert [door.opens(near) for near in (False, True, False, True)] == holds
 
 
 def test_the_same_mistake_is_made_in_all_places_of_a_method() -> None:
