@@ -6,6 +6,7 @@ import contextlib
 import os
 import resource
 import socket
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -200,6 +201,17 @@ def test_who_runs_while_the_counters_of_the_user_are_used_up_runs_again_alone(
 def test_a_user_whose_counters_have_room_is_found_to_have_room() -> None:
     assert limit_guards._can_watch()
     assert limit_guards._can_make_large_pipes()
+
+
+@pytest.mark.parametrize("kind", ["RLIMIT_NOFILE", "RLIMIT_SIGPENDING"])
+def test_of_what_linux_counts_for_a_user_a_box_gets_less_than_the_grader(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(limit_guards, "usable", dict)
+    guard = limit_guards.BoxGuard(Limits())
+    own = resource.getrlimit(getattr(resource, kind))[0]
+    assert guard.rlimits[kind] < (sys.maxsize if own == resource.RLIM_INFINITY else own)
+    guard.close()
 
 
 def test_threads_that_the_system_refuses(run: Run) -> None:
