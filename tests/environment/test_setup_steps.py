@@ -14,7 +14,7 @@ import pytest
 
 from course_runtime import system_packages
 from course_runtime.place import Place, environment_paths
-from course_runtime.ros_flavour import Ros
+from course_runtime.ros_flavour import RECORD, Ros
 from environment import bootstrap
 from environment.setup_steps import Setup, SetupError
 from environment.steps import Step, digest
@@ -212,6 +212,19 @@ def test_a_set_up_removes_what_earlier_ones_have_left(
     bootstrap.set_up(place, {"PATH": os.environ["PATH"]}, with_tests=False)
     assert [path.name for path in place.notes.iterdir()] == ["setup.log"]
     assert (place.notes / "setup.log").stat().st_mode & 0o777 == 0o600
+
+
+def test_what_was_done_in_the_old_environment_is_to_be_done_again_in_a_new_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = Place(tmp_path, Path(sys.executable))
+    for file in (place.prefix / "lib/old.py", place.notes / "setup.log", place.notes / "stamps/packages"):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
+    monkeypatch.setattr(Setup, "_run", lambda *_: None)
+    steps(place)["environment"].run()
+    left = {path for path in place.prefix.rglob("*") if path.is_file()}
+    assert left == {place.notes / "setup.log", place.prefix / RECORD}
 
 
 def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path: Path) -> None:
