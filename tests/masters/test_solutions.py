@@ -93,6 +93,13 @@ def test_a_changed_solution_changes_it(write_master: Callable[[str], Path], ten_
     assert "3 * number" in reference_source(path, "lab_9_1.double", points=ten_points).source
 
 
+def test_its_own_cells_are_those_since_the_check_before(
+    write_master: Callable[[str], Path], ten_points: Points
+) -> None:
+    (own,) = reference_source(write_master(LAB), "lab_9_1.half", points=ten_points).own
+    assert own.startswith("def half")
+
+
 def test_an_exercise_that_is_not_checked(write_master: Callable[[str], Path], ten_points: Points) -> None:
     with pytest.raises(MasterError, match=r"No cell checks 'lab_9_1\.triple'"):
         reference_source(write_master(PROGRAM), "lab_9_1.triple", points=ten_points)
