@@ -8,17 +8,21 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from autograder import check_journal
 from autograder.authoring.answer_bank import answers_folder
 from autograder.boxes.sandbox import why_impossible
-from autograder.cli import GROUPS, student_commands
+from autograder.cli import GROUPS, cli, student_commands
 from autograder.cli.student_commands import show
+from autograder.judge import command_check
 from autograder.kit.reported_texts import AT_PACE
 from autograder.student.lab import NOTEBOOKS_VARIABLE
-from autograder.verdict import not_checked
+from autograder.verdict import State, Verdict, not_checked
 from course_runtime.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
 from tests.cases import cases, named_cases
 from tests.measure.bank import answer_named
@@ -147,6 +151,20 @@ def test_only_a_program_of_the_students_folder_earns_progress(
     monkeypatch.setenv(NOTEBOOKS_VARIABLE, str(tmp_path / "mine"))
     monkeypatch.chdir(tmp_path / typed_in)
     assert student_commands._is_students(words) is counts
+
+
+@pytest.mark.parametrize(("options", "notes"), [((), 1), (("--box",), 0)])
+def test_a_check_in_a_box_is_no_progress(
+    options: tuple[str, ...], notes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    noted: list[Verdict] = []
+    verdict = Verdict("lab_1_2.talker", "Talker", State.PASSED, 10.0, 10.0)
+    monkeypatch.setattr(command_check, "check_and_keep", lambda *_, **__: (verdict, None))
+    monkeypatch.setattr(student_commands, "_box", lambda *_: nullcontext())
+    monkeypatch.setattr(student_commands, "_is_students", lambda _: True)
+    monkeypatch.setattr(check_journal, "note_check", noted.append)
+    done = CliRunner().invoke(cli, ["check", *options, "lab_1_2.talker", "--", "true"])
+    assert (done.exit_code, noted) == (0, [verdict] * notes)
 
 
 @pytest.mark.ros
